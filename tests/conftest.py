@@ -26,6 +26,9 @@ settings.load_profile("explore" if os.environ.get("EXPLORE") else "same")
 if os.environ.pop("PYTHONDONTWRITEBYTECODE", None) is not None:
     sys.dont_write_bytecode = False
 
+# With several processes on all processors, threads of linear algebra wait for each other: tests of reports take twice as long.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 # Tests leave the user's cache and key alone.
 os.environ["XDG_CACHE_HOME"] = os.environ["XDG_DATA_HOME"] = tempfile.mkdtemp(prefix="actr3d-tests-")
 atexit.register(shutil.rmtree, os.environ["XDG_DATA_HOME"], ignore_errors=True)

@@ -280,12 +280,12 @@ def _show_fit(result: FitResult, out: Output) -> None:
     """Prints the parameters, and how well the model agrees with each target."""
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     few = result.fit.cells <= len(result.parameters)
+    none = "none: it needs more means than parameters" if few else "not determined" if result.is_confirmed else "none yet"
     for one in result.parameters:
-        low, high = (
-            "none: it needs more means than parameters" if few else "not determined" if bound is None else f"{bound:g}"
-            for bound in (one.low, one.high)
-        )
+        low, high = (none if bound is None else f"{bound:g}" for bound in (one.low, one.high))
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
+    if not result.is_confirmed and not few:
+        out.line("No candidate fits as well as those between them should: the search has not ended; run more candidates (or more trials)")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
             r, r2 = ("none" if value is None else f"{value:.3f}" for value in (found.r, found.r2))

@@ -1,15 +1,11 @@
 """Fits parameters of a model to data, and says how well they are determined.
 
-The first ten candidates are a Latin hypercube. After these, the minimum of a quadratic surface (see below) and Optuna's TPE sampler give
-candidates in turn. Each candidate is an experiment of its own, with the same seeds as all others, so that the misfit is a function of the
+The first ten candidates are a Latin hypercube. From then on, each other candidate is the one that fits best according to an emulator of
+the model (`actr3d.experiment.emulator`); between them, candidates at the bounds of the intervals of the parameters, and of Optuna's TPE
+sampler, take turns. Each candidate is an experiment of its own, with the same seeds as all others, so that the misfit is a function of the
 parameters alone. The candidates and their rows stay in the folder: a fit that was killed continues where it was, and gives the same result.
 
-Around the best candidate, the sum of squared differences is described by a quadratic surface. It also gives the intervals of the
-parameters and the estimates of parameter recovery. An interval has the values of a parameter at which the
-least sum of squares over all other parameters, relative to that over all of them, is at most 1 + F / (n - p), with the 95 % quantile of
-the F distribution with 1 and n - p degrees of freedom: n means with normal errors of one unknown variance, and p parameters.
-Source: Bates and Watts (1988), Nonlinear Regression Analysis and Its Applications, section 6.1 (profile t); Raue et al. (2009),
-Bioinformatics 25(15), for profile likelihoods.
+The emulator also gives the intervals of the parameters and the estimates of parameter recovery.
 """
 
 from __future__ import annotations
@@ -33,12 +29,12 @@ from typing import Any
 import numpy as np
 import optuna
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
+from actr3d.experiment.emulator import STEPS, Emulator
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r
@@ -56,10 +52,6 @@ STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
 DRAWS = 20
 """The maximum number of values that are drawn for a simulated data set, until the model has all means."""
-STEPS = 200
-"""The number of equal steps of each range to which the minimum of the surface is rounded before it is tried."""
-HALVINGS = 20
-"""The number of bisection steps that locate a bound of an interval, to less than a millionth of the range."""
 
 Cell = tuple[tuple[str, Any], ...]
 """The conditions of a mean: names of columns and their values."""
@@ -197,6 +189,8 @@ class FitResult:
     fit: Agreement
     """The agreement with the target that the parameters were fitted to."""
     candidates: int
+    is_confirmed: bool
+    """Whether a candidate fits as well as any can, according to the emulator; otherwise, there are no intervals yet."""
     tried: tuple[TriedCandidate, ...]
     """All candidates, in order."""
     held_out: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
@@ -323,14 +317,15 @@ class Fit:
                 f"measure '{self.measure}': no candidate has a mean in all conditions of the target, without failed trials{failure}"
             )
         values = self._points[best]
-        surface = self._surface(self.target)
-        intervals = [surface.interval(axis) for axis in range(len(self._ranges))]
+        emulator = self._emulator(self.target)
+        intervals = [emulator.interval(axis) for axis in range(len(self._ranges))]
         return FitResult(
             design=self._design,
             measure=self.measure,
             parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
             fit=_agreement_of(tried[best], self.target),
             candidates=candidates,
+            is_confirmed=emulator.is_confirmed,
             tried=tuple(
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
@@ -352,11 +347,9 @@ class Fit:
                 rng.shuffle(order)
                 columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), DIGITS)
             return columns
-        if number % 2 == 0:
-            # Rounded to steps: a candidate close to an earlier one adds little.
-            minimum = self._values_at(np.round(self._surface(self.target).minimum() * STEPS) / STEPS)
-            if minimum not in self._points:
-                return minimum
+        proposed = self._proposed_by_emulator(number - STARTING)
+        if proposed is not None and proposed not in self._points:
+            return proposed
         distributions: dict[str, Any] = {one.name: optuna.distributions.FloatDistribution(one.low, one.high) for one in self._ranges}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
@@ -368,6 +361,18 @@ class Fit:
             if math.isfinite(loss):
                 study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=loss))
         return {name: round(value, DIGITS) for name, value in study.ask(distributions).params.items()}
+
+    def _proposed_by_emulator(self, number: int) -> dict[str, float] | None:
+        """Returns what the emulator proposes, in turn the values that fit best and a bound of an interval; None where it is TPE's turn."""
+        if not any(math.isfinite(rmse(one.means, self.target)) for one in self._simulated):
+            return None
+        turn, is_bound = divmod(number, 2)
+        turn %= 2 * len(self._ranges) + 1
+        if is_bound and turn == 2 * len(self._ranges):
+            return None
+        emulator = self._emulator(self.target)
+        point = emulator.bound(turn // 2, upper=turn % 2 == 1) if is_bound else emulator.minimum
+        return self._values_at(np.round(point * STEPS) / STEPS)  # rounded: a candidate close to an earlier one adds little
 
     def _evaluate(self, number: int, what: str) -> None:
         point = self._propose(number)
@@ -436,12 +441,12 @@ class Fit:
             raise ExperimentError(f"{kind}: no condition {without}{found.failure}")
         return _agreement_of(found, self.target if target is None else target)
 
-    def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
-        """Returns the surface of the sums of squares of all candidates until now."""
-        points = [[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points]
-        losses = [rmse(one.means, target) for one in self._simulated]
-        squares = [len(target) * loss * loss for loss in losses]  # infinite, where ** would be an error
-        return QuadraticSurface(np.array(points), squares, len(target))
+    def _emulator(self, target: Mapping[Cell, float]) -> Emulator:
+        """Returns the emulator that all candidates until now give, those with a mean in all conditions of the target."""
+        usable = [n for n, one in enumerate(self._simulated) if math.isfinite(rmse(one.means, target))]
+        points = [[(self._points[n][one.name] - one.low) / (one.high - one.low) for one in self._ranges] for n in usable]
+        means = [[self._simulated[n].means[cell] for cell in target] for n in usable]
+        return Emulator(np.array(points), np.array(means), np.array([*target.values()]))
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
         parts = zip(self._ranges, point.tolist(), strict=True)
@@ -503,106 +508,12 @@ class Fit:
             failure = found.failure
             if math.isfinite(rmse(found.means, self.target)):
                 target = {cell: found.means[cell] for cell in self.target}
-                return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
+                return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._emulator(target).minimum)}
         raise ExperimentError(f"--recover: no mean in all conditions of the target for {DRAWS} drawn values{failure}")
 
 
 def _text_of(values: Mapping[str, float]) -> str:
     return ", ".join(f"{name} = {value:g}" for name, value in values.items())
-
-
-class QuadraticSurface:
-    """A quadratic surface through the sums of squares of candidates near the best one.
-
-    Args:
-        points: The candidates, (n, p), each parameter from 0 to 1.
-        squares: Their sums of squared differences from the data; infinite for candidates without a value.
-        data: The number of means in the data.
-    """
-
-    def __init__(self, points: NDArray[np.float64], squares: Sequence[float], data: int) -> None:
-        values = np.array(squares)
-        order = np.argsort(values, kind="stable")
-        order = order[np.isfinite(values[order])]
-        values = np.maximum(values, 1e-12)
-        self._axes, self._data = points.shape[1], data
-        self._points, self._squares = points[order], values[order]
-        terms = (self._axes + 1) * (self._axes + 2) // 2
-        near = order[: max(2 * terms, len(order) // 2)]
-        self._least = float(values[order[0]]) if len(order) else 1e-12
-        design = self._terms(points[near])
-        # The best candidates weigh most, as many as a surface needs: it need not be quadratic far from the minimum.
-        half = float(values[order[min(terms, len(order)) - 1]]) if len(order) else 1.0
-        weighted = design.T * (half / (values[near] + half))
-        self._weights = np.linalg.solve(weighted @ design + 1e-9 * np.eye(design.shape[1]), weighted @ values[near])
-
-    def _terms(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        products = [points[:, a] * points[:, b] for a in range(self._axes) for b in range(a, self._axes)]
-        return np.column_stack([np.ones(len(points)), points, *products])
-
-    def minimum(self) -> NDArray[np.float64]:
-        """Returns the point with the least value of the surface within the ranges, (p,)."""
-        return self._lowest({})[0]
-
-    def interval(self, axis: int) -> tuple[float | None, float | None]:
-        """Returns the bounds of the 95 % interval of a parameter; None where the range ends first.
-
-        The interval contains all candidates that fit as well. Where one of them is more than a step beyond the bound of the surface, the
-        surface does not describe the candidates, such as along a curved ridge, and the bound is None.
-
-        With few more means than parameters, an interval is wide, because the residual variance is uncertain. With no more means than
-        parameters, this variance cannot be estimated, and both bounds are None.
-        """
-        free = self._data - self._axes
-        if free <= 0:
-            return None, None
-        minimum, least = self._lowest({})
-        most = 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
-
-        def above(value: float) -> float:
-            return max(self._lowest({axis: value})[1], self._least) - most * max(least, self._least)
-
-        good = self._points[self._squares <= most * max(least, self._least), axis]
-        bounds: list[float | None] = []
-        for end, outermost in ((0.0, min), (1.0, max)):
-            outside, inside = end, float(minimum[axis])
-            for _ in range(HALVINGS):
-                middle = (outside + inside) / 2
-                outside, inside = (middle, inside) if above(middle) > 0 else (outside, middle)
-            bound = float(outermost([inside, *good]))
-            bounds.append(bound if above(end) > 0 and abs(bound - inside) <= 1 / STEPS else None)
-        return bounds[0], bounds[1]
-
-    def _lowest(self, given: Mapping[int, float]) -> tuple[NDArray[np.float64], float]:
-        """Returns the point with the least value of the surface where each parameter is from 0 to 1, (p,), and this value.
-
-        The surface need not have a minimum of its own there. Its least value is at a point where some of the parameters are at an end of
-        their range, and the slope along all others is 0: all such points are compared.
-
-        Args:
-            given: Parameters that are not searched: their values by number.
-        """
-        constant, slope, upper = self._weights[0], self._weights[1 : self._axes + 1], np.zeros((self._axes, self._axes))
-        upper[np.triu_indices(self._axes)] = self._weights[self._axes + 1 :]
-        curve = upper + upper.T
-        searched = [axis for axis in range(self._axes) if axis not in given]
-        best, least = np.zeros(self._axes), math.inf
-        for at_end in itertools.product((False, True), repeat=len(searched)):
-            ends = [axis for axis, end in zip(searched, at_end, strict=True) if end]
-            inner = [axis for axis, end in zip(searched, at_end, strict=True) if not end]
-            points = np.zeros((2 ** len(ends), self._axes))
-            points[:, list(given)] = list(given.values())
-            points[:, ends] = list(itertools.product((0.0, 1.0), repeat=len(ends)))
-            if inner:
-                try:
-                    points[:, inner] = -np.linalg.solve(curve[np.ix_(inner, inner)], slope[inner][:, None] + curve[inner] @ points.T).T
-                except np.linalg.LinAlgError:  # flat in some direction: then the minimum is also at an end of a range, which is tried, too
-                    continue
-            points = points[np.all((points >= 0) & (points <= 1), axis=1)]
-            values = constant + points @ slope + np.einsum("ij,jk,ik->i", points, curve, points) / 2
-            if len(values) and values.min() < least:
-                best, least = points[int(np.argmin(values))], float(values.min())
-        return best, least
 
 
 # -- means

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import os
@@ -12,9 +11,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from scipy.special import stdtrit
 
 from actr3d.cli import main
 from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
@@ -25,7 +22,6 @@ from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import (
     STARTING,
     Fit,
-    QuadraticSurface,
     Range,
     TargetMean,
     agreement,
@@ -531,88 +527,6 @@ def test_the_measures_of_a_fit_are_found_by_building_one_simulation(tmp_path: Pa
     assert main(["fit", str(path), "--parameter", "speed", "--target", str(people)]) == 2  # the range is read next
     assert "--parameter: must be NAME=LOW..HIGH (got 'speed')" in capsys.readouterr().err
     assert len(built) == 1
-
-
-def test_a_model_that_is_determined_exactly_has_a_narrow_interval() -> None:
-    """Of an exponential, which is no parabola but near its minimum."""
-    points = np.concatenate([np.linspace(0.05, 0.95, 10), 0.2 + np.linspace(-0.02, 0.02, 9)])
-    squares = [float(math.exp(5 * point) - math.exp(1)) ** 2 for point in points]
-    surface = QuadraticSurface(points[:, None], squares, 3)
-    assert float(surface.minimum()[0]) == pytest.approx(0.2, abs=0.01)
-    low, high = surface.interval(0)
-    assert low is not None
-    assert high is not None
-    assert 0.15 < low <= high < 0.25
-
-
-@pytest.mark.parametrize("parameters", [1, 3, 4, 6])
-def test_the_minimum_and_the_interval_of_a_quadratic_are_exact(parameters: int) -> None:
-    rng = np.random.default_rng(parameters)
-    points = rng.uniform(size=(80, parameters))
-    squares = [1 + 3000 * float(np.sum((point - 0.46) ** 2) + (point[0] - 0.46) * (point[-1] - 0.46)) for point in points]
-    surface = QuadraticSurface(np.vstack([points, np.full(parameters, 0.46)]), [*squares, 1.0], 20)
-    assert surface.minimum() == pytest.approx(np.full(parameters, 0.46), abs=1e-4)
-    curve = np.eye(parameters)
-    curve[0, -1] += 0.5
-    curve[-1, 0] += 0.5
-    half = math.sqrt(stdtrit(20 - parameters, 0.975) ** 2 / (20 - parameters) * np.linalg.inv(curve)[0, 0] / 3000)
-    assert surface.interval(0) == (pytest.approx(0.46 - half, abs=1e-4), pytest.approx(0.46 + half, abs=1e-4))
-
-
-def test_a_saddle_has_its_least_value_at_an_end() -> None:
-    points = np.random.default_rng(1).uniform(size=(80, 3))
-    squares = [2 + (x - 0.3) ** 2 - (y - 0.4) ** 2 + 0.1 * z for x, y, z in points]
-    assert QuadraticSurface(points, squares, 20).minimum() == pytest.approx([0.3, 1, 0], abs=1e-3)
-
-
-def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
-    rng = np.random.default_rng(1)
-    points = rng.uniform(size=(60, 2))
-    squares = [1 + 30 * (x - 0.4) ** 2 for x, _ in points]
-    surface = QuadraticSurface(points, squares, 10)
-    low, high = surface.interval(0)
-    half = math.sqrt(2.306**2 / 8 / 30)  # t of 95 % with 10 - 2 degrees of freedom
-    assert (low, high) == (pytest.approx(0.4 - half, abs=0.01), pytest.approx(0.4 + half, abs=0.01))
-    assert surface.interval(1) == (None, None)
-    assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
-
-
-def test_a_bound_is_not_determined_where_candidates_beyond_it_fit_as_well() -> None:
-    """The squares of a product have a curved ridge: with 40 candidates, a surface near the best of them does not follow it."""
-    rng = np.random.default_rng(3)
-    points = rng.uniform(size=(40, 2))
-    squares = [0.001 + ((0.3 + x) * (0.3 + y) - 0.64) ** 2 for x, y in points]
-    surface = QuadraticSurface(points, squares, 4)
-    most = min(squares) * (1 + stdtrit(2, 0.975) ** 2 / 2)
-    good = [float(x) for (x, _), square in zip(points, squares, strict=True) if square <= most]
-    low, high = surface.interval(0)
-    assert low is None or low <= min(good)
-    assert high is None or high >= max(good)
-    assert None in (low, high)
-
-
-@pytest.mark.daily(1)
-@pytest.mark.parametrize(("data", "parameters"), [(4, 2), (2, 1), (3, 1), (12, 2)])
-def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameters: int) -> None:
-    """A straight line through the origin, or with an offset, with normal errors whose variance the fit does not know."""
-    rng, runs, inside = np.random.default_rng(7), 300, 0
-    x = np.column_stack([np.linspace(1, 2, data), np.ones(data)])[:, :parameters]
-    true = np.full(parameters, 0.5)
-    grid = list(itertools.product(np.linspace(0, 1, 9), repeat=parameters))
-    for _ in range(runs):
-        y = x @ true + rng.normal(0, 0.1, data)
-        points = np.array([*grid, np.linalg.lstsq(x, y, rcond=None)[0]], dtype=np.float64)  # a fit tries the minimum of the surface, too
-        squares = [float(np.sum((y - x @ point) ** 2)) for point in points]
-        low, high = QuadraticSurface(points, squares, data).interval(0)
-        inside += (low is None or low <= 0.5) and (high is None or high >= 0.5)
-    assert 0.92 < inside / runs < 0.98  # 0.95, and more than twice the standard error of 300 runs
-
-
-def test_as_many_parameters_as_data_have_no_interval() -> None:
-    points = np.random.default_rng(1).uniform(size=(60, 1))
-    squares = [(x - 0.4) ** 2 for (x,) in points]
-    assert QuadraticSurface(points, squares, 1).interval(0) == (None, None)
-    assert None not in QuadraticSurface(points, squares, 2).interval(0)
 
 
 def test_differences_too_large_for_a_float_are_infinite() -> None:

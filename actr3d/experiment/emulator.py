@@ -1,0 +1,167 @@
+"""What a model's means would be at values of its parameters that were not tried: a Gaussian process through those that were.
+
+From it come the values that fit data best, and the intervals of the parameters. An interval has the values of a parameter at which the
+least sum of squared differences over all other parameters, relative to that over all of them, is at most 1 + F / (n - p), with the 95 %
+quantile of the F distribution with 1 and n - p degrees of freedom: n means with normal errors of one unknown variance, and p parameters.
+Sources: Bates and Watts (1988), Nonlinear Regression Analysis and Its Applications, section 6.1 (profile t); Raue et al. (2009),
+Bioinformatics 25(15), for profile likelihoods; Rasmussen and Williams (2006), Gaussian Processes for Machine Learning, chapter 2.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+Array = NDArray[np.float64]
+
+STEPS = 200
+"""The number of equal steps of each range in which values are compared."""
+STARTS = 2**12
+"""The number of points, drawn evenly, from the best of which the search for a minimum begins."""
+DESCENTS = 15
+"""The maximum number of steps of this search."""
+LEAST = 1e-12
+"""The least sum of squares that differs from 0, as a part of the greatest squared difference of any mean of a candidate."""
+
+
+class Emulator:
+    """The sum of squared differences between a model's means and data, at all values of the parameters.
+
+    Each mean is predicted on its own; all share how quickly they change along each parameter, and how noisy they are. Both are estimated.
+
+    Args:
+        points: The candidates, (n, p), each parameter from 0 to 1.
+        means: Their means, (n, k).
+        data: The means to fit, (k,).
+    """
+
+    def __init__(self, points: Array, means: Array, data: Array) -> None:
+        library: Any = import_module("sklearn.gaussian_process")  # here, because this takes a second
+        kernels = library.kernels
+        unit = float(np.abs(means - data).max()) or 1.0  # so that no square is too large for a float
+        means, data = means / unit, data / unit
+        self._points, self._data, self._axes = points, data, points.shape[1]
+        lengths = kernels.RBF(np.full(self._axes, 0.5), (0.05, 20.0))
+        kernel = kernels.ConstantKernel(1.0, (1e-2, 1e4)) * lengths + kernels.WhiteKernel(1e-6, (1e-10, 1.0))
+        with warnings.catch_warnings(), _one_thread():
+            warnings.simplefilter("ignore")  # that an estimate is at a bound, as it is for a straight line
+            process = library.GaussianProcessRegressor(kernel, normalize_y=True).fit(points, means)
+        self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
+        deviation, middle = (np.broadcast_to(row, data.shape) for row in (process._y_train_std, process._y_train_mean))
+        self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
+        self._middle: Array = middle
+        self._starts = np.vstack([points, np.random.default_rng(1).random((STARTS, self._axes))])
+        self._start_squares = self._squares(self._starts)
+        found, squares = self._descend(self._starts[np.argsort(self._start_squares)[: 4 * self._axes]], range(self._axes))
+        best = int(np.argmin(squares))
+        self.minimum: Array = found[best]
+        """Where the sum of squares is least, (p,)."""
+        self._most = max(float(squares[best]), LEAST)
+        if (free := len(data) - self._axes) > 0:
+            self._most *= 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
+        differences = means - data
+        self._good = points[np.einsum("nk,nk->n", differences, differences) <= self._most]
+        self.is_confirmed = len(self._good) > 0
+        """Whether a candidate fits as well as the minimum, within the interval; otherwise, the minimum is a guess."""
+
+    def interval(self, axis: int) -> tuple[float | None, float | None]:
+        """Returns the bounds of the 95 % interval of a parameter; None where the range ends first, and while the minimum is a guess.
+
+        It contains all candidates that fit as well. If values that do are apart from each other, it contains what is between them.
+
+        With few more means than parameters, an interval is wide, because the residual variance is uncertain. With no more means than
+        parameters, this variance cannot be estimated, and both bounds are None.
+        """
+        if len(self._data) <= self._axes or not self.is_confirmed:
+            return None, None
+        values, squares = self._profile(axis)
+        good = self._good[:, axis]
+        inside = np.flatnonzero(squares <= self._most)
+        bounds: list[float | None] = []
+        for number, beyond, outermost in ((inside[0], -1, min), (inside[-1], 1, max)):
+            if not 0 <= number + beyond < len(values):
+                bounds.append(None)
+                continue
+            part = (self._most - squares[number]) / (squares[number + beyond] - squares[number])
+            at = values[number] + part * (values[number + beyond] - values[number])
+            bounds.append(float(outermost([at[axis], *good])))
+        return bounds[0], bounds[1]
+
+    def bound(self, axis: int, *, upper: bool) -> Array:
+        """Returns the point at a bound of the interval of a parameter, or at the end of its range, (p,): where a candidate tells most
+        about this bound."""
+        values, squares = self._profile(axis)
+        return values[np.flatnonzero(squares <= self._most)[-1 if upper else 0]]
+
+    def _profile(self, axis: int) -> tuple[Array, Array]:
+        """Returns the least sum of squares at each step of the range of a parameter, over all others, and where it is.
+
+        Returns:
+            The points, (m, p), and the sums, (m,). One of the points is the minimum.
+        """
+        others = [other for other in range(self._axes) if other != axis]
+        steps = np.unique([*np.linspace(0, 1, STEPS + 1), self.minimum[axis]])
+        values = np.tile(self.minimum, (len(steps), 1))
+        from_worst = self._starts[np.argsort(self._start_squares)[::-1]]
+        values[np.searchsorted(steps, np.rint(from_worst[:, axis] * STEPS) / STEPS)] = from_worst  # the best near each step comes last
+        values[:, axis] = steps
+        values[steps == self.minimum[axis]] = self.minimum
+        with _one_thread():
+            values, squares = self._descend(values, others)
+            for shift in (1, -1, 1, -1):  # along a valley, what is best at one step is a start for the next
+                started = np.roll(values, shift, axis=0)
+                started[:, axis] = steps
+                found, theirs = self._descend(started, others)
+                better = theirs < squares
+                values[better], squares[better] = found[better], theirs[better]
+        return values, squares
+
+    def _predict(self, points: Array) -> tuple[Array, Array]:
+        """Returns how far predicted means are from the data, (m, k), and the correlation of the points with the candidates, (m, n)."""
+        here, there = points / self._lengths, self._points / self._lengths
+        squares = np.sum(here**2, axis=1)[:, None] + np.sum(there**2, axis=1) - 2 * here @ there.T
+        correlation = np.exp(-squares / 2)
+        return correlation @ self._weights + self._middle - self._data, correlation
+
+    def _squares(self, points: Array) -> Array:
+        differences, _ = self._predict(points)
+        return np.einsum("mk,mk->m", differences, differences)
+
+    def _descend(self, points: Array, axes: Sequence[int]) -> tuple[Array, Array]:
+        """Moves points along some axes towards the least sum of squares near each of them, within 0 and 1: the Levenberg-Marquardt method.
+
+        Returns:
+            The points, (m, p), and their sums of squares, (m,).
+        """
+        points, squares, damping = points.copy(), self._squares(points), np.full(len(points), 1e-3)
+        fixed = [axis for axis in range(self._axes) if axis not in axes]
+        for _ in range(DESCENTS if len(axes) else 0):
+            differences, correlation = self._predict(points)
+            ways = (self._points - points[:, None, :]) / self._lengths**2
+            slopes = np.einsum("mn,mnp,nk->mpk", correlation, ways, self._weights, optimize=True)
+            slopes[:, fixed] = 0
+            gradient = np.einsum("mpk,mk->mp", slopes, differences)
+            at_end = ((points <= 0) & (gradient > 0)) | ((points >= 1) & (gradient < 0))
+            slopes[at_end], gradient[at_end] = 0, 0
+            curve = slopes @ slopes.transpose(0, 2, 1)
+            scale = damping * np.trace(curve, axis1=1, axis2=2) + 1e-300
+            damped = curve + scale[:, None, None] * np.eye(self._axes)
+            step = cast("Array", np.linalg.solve(damped, gradient[:, :, None]))
+            tried: Array = np.clip(points - step[:, :, 0], 0, 1)
+            found = self._squares(tried)
+            better = found < squares
+            points[better], squares[better] = tried[better], found[better]
+            damping = np.clip(np.where(better, damping / 5, damping * 5), 1e-12, 1e12)
+        return points, squares
+
+
+def _one_thread() -> Any:
+    """Returns a context in which linear algebra runs in one thread: several take ten times as long for matrices as small as these."""
+    limits: Any = import_module("threadpoolctl").threadpool_limits
+    return limits(1)

@@ -1,0 +1,176 @@
+"""The emulator finds the values that fit best, and the intervals that the model itself would give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import stdtrit
+
+from actr3d.experiment.emulator import Emulator
+
+X = np.arange(1.0, 9.0)
+optimize: Any = import_module("scipy.optimize")
+Model = Callable[..., Any]
+
+
+def power(a: Any, d: Any) -> Any:
+    return (0.3 + 2.7 * a)[..., None] * X ** -(0.2 + d)[..., None]
+
+
+def product(a: Any, b: Any) -> Any:
+    """Only the product matters: a curved ridge."""
+    return ((0.3 + a) * (0.3 + b))[..., None] * X**-0.5
+
+
+def added(a: Any, b: Any) -> Any:
+    """Only the sum matters: a straight ridge."""
+    return (a + b)[..., None] * X
+
+
+def line(slope: Any, offset: Any) -> Any:
+    return slope[..., None] * X + offset[..., None]
+
+
+def growth(rate: Any) -> Any:
+    return np.exp(rate[..., None] * X)
+
+
+def offset_power(a: Any, d: Any, c: Any) -> Any:
+    return c[..., None] + (0.3 + 2.7 * a)[..., None] * X ** -(0.2 + 1.3 * d)[..., None]
+
+
+def tried(model: Model, axes: int, data: Any, number: int = 30) -> Emulator:
+    """Returns an emulator after as many candidates as a fit has, half of them where the one before was least or at a bound."""
+    points = np.random.default_rng(axes).random((10, axes))
+    for turn in range(number - 10):
+        emulator = Emulator(points, model(*points.T), data)
+        bound = turn // 2 % (2 * axes)
+        further = emulator.minimum if turn % 2 == 0 else emulator.bound(bound // 2, upper=bound % 2 == 1)
+        points = np.vstack([points, further])
+    return Emulator(points, model(*points.T), data)
+
+
+def profile(model: Model, axes: int, data: Any, axis: int) -> tuple[float | None, float | None]:
+    """Returns the bounds of the interval from the model itself: at each step, SciPy finds the least squares over the other parameters."""
+    grid, starts = np.linspace(0, 1, 101), [np.full(axes, part) for part in (0.2, 0.5, 0.8)]
+
+    def least(low: Any, high: Any) -> float:
+        def differences(point: Any) -> Any:
+            return model(*point) - data
+
+        return 2 * min(optimize.least_squares(differences, np.clip(start, low, high), bounds=(low, high)).cost for start in starts)
+
+    def at(value: float) -> float:
+        low, high = np.zeros(axes), np.ones(axes)
+        low[axis], high[axis] = max(0, value - 1e-9), min(1, value + 1e-9)
+        return least(low, high)
+
+    free = len(data) - axes
+    most = least(np.zeros(axes), np.ones(axes)) * (1 + stdtrit(free, 0.975) ** 2 / free)
+    inside = [float(value) for value in grid if at(value) <= most]
+    return None if inside[0] == 0 else inside[0], None if inside[-1] == 1 else inside[-1]
+
+
+@pytest.mark.parametrize(
+    ("model", "true", "noise"),
+    [(power, (0.3, 0.4), 0.05), (product, (0.4, 0.5), 0.05), (added, (0.5, 0.6), 0.1), (offset_power, (0.25, 0.3, 0.3), 0.02)],
+)
+def test_intervals_are_those_of_the_model_itself(model: Model, true: tuple[float, ...], noise: float) -> None:
+    data = model(*np.array(true)) + np.random.default_rng(7).normal(0, noise, len(X))
+    emulator = tried(model, len(true), data)
+    assert emulator.is_confirmed
+    for axis in range(len(true)):
+        exact, found = profile(model, len(true), data, axis), emulator.interval(axis)
+        assert [bound is None for bound in found] == [bound is None for bound in exact]
+        for bound, expected in zip(found, exact, strict=True):
+            assert bound is None or bound == pytest.approx(expected, abs=0.02)
+
+
+def test_the_minimum_and_the_interval_of_a_straight_line_are_exact() -> None:
+    x = np.column_stack([X, np.ones(8)])
+    data = x @ [0.5, 0.4] + np.random.default_rng(1).normal(0, 0.1, 8)
+    emulator = tried(line, 2, data, 16)
+    best = np.linalg.lstsq(x, data, rcond=None)[0]
+    assert emulator.minimum == pytest.approx(best, abs=1e-3)
+    variance = np.sum((data - x @ best) ** 2) / 6
+    half = float(stdtrit(6, 0.975) * math.sqrt(variance * np.linalg.inv(x.T @ x)[0, 0]))
+    assert emulator.interval(0) == (pytest.approx(best[0] - half, abs=2e-3), pytest.approx(best[0] + half, abs=2e-3))
+
+
+def test_a_model_that_is_determined_exactly_has_a_narrow_interval() -> None:
+    emulator = tried(growth, 1, growth(np.array(0.2)), 20)
+    low, high = emulator.interval(0)
+    assert low is not None
+    assert high is not None
+    assert 0.19 < low <= 0.2 <= high < 0.21
+
+
+def test_noise_of_the_means_is_smoothed() -> None:
+    rng = np.random.default_rng(5)
+    points = rng.random((40, 1))
+    means = points * X + rng.normal(0, 0.1, (40, 8))
+    data = 0.5 * X + rng.normal(0, 0.1, 8)
+    slope = float(data @ X / (X @ X))
+    assert Emulator(points, means, data).minimum[0] == pytest.approx(slope, abs=0.02)
+
+
+def test_no_interval_is_given_while_the_minimum_is_a_guess() -> None:
+    points = np.array([[0.1], [0.8]])
+    emulator = Emulator(points, points * X, 0.5 * X)
+    assert not emulator.is_confirmed
+    assert emulator.interval(0) == (None, None)
+
+
+def test_intervals_contain_all_candidates_that_fit_as_well() -> None:
+    """Candidates whose means jump, where a smooth function cannot follow."""
+    data = np.array([0.6, 0.4, 0.55, 0.45])
+    points = np.random.default_rng(3).random((30, 1))
+    means = np.where(np.abs(points - 0.5) < 0.2, 0.5, 0.5 + np.sign(points - 0.5)) * np.ones(4)
+    emulator = Emulator(points, means, data)
+    squares = np.sum((means - data) ** 2, axis=1)
+    low, high = emulator.interval(0)
+    if emulator.is_confirmed:
+        good = points[squares <= squares.min() * 1.0001, 0]
+        assert low is None or low <= good.min()
+        assert high is None or high >= good.max()
+
+
+def test_a_single_candidate_determines_nothing() -> None:
+    emulator = Emulator(np.array([[0.3]]), np.ones((1, 4)), np.zeros(4))
+    assert emulator.interval(0) == (None, None)
+
+
+def test_as_many_parameters_as_data_have_no_interval() -> None:
+    points = np.random.default_rng(1).random((20, 1))
+    assert Emulator(points, points, np.array([0.4])).interval(0) == (None, None)
+    assert None not in Emulator(points, points * [1, 2], np.array([0.4, 0.9])).interval(0)
+
+
+def test_means_of_any_size_have_the_same_intervals() -> None:
+    data = 0.5 * X + np.random.default_rng(1).normal(0, 0.1, 8)
+    points = np.append(np.linspace(0, 1, 20), 0.5)[:, None]
+    usual = Emulator(points, points * X, data).interval(0)
+    assert None not in usual
+    for unit in (1e-200, 1e200):
+        assert Emulator(points, points * X * unit, data * unit).interval(0) == pytest.approx(usual, rel=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("data", "parameters"), [(4, 2), (2, 1), (3, 1), (12, 2)])
+def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameters: int) -> None:
+    """A straight line through the origin, or with an offset, with normal errors whose variance the fit does not know."""
+    rng, runs, inside = np.random.default_rng(7), 200, 0
+    x = np.column_stack([np.linspace(1, 2, data), np.ones(data)])[:, :parameters]
+    points = rng.random((12, parameters))
+    for _ in range(runs):
+        y = x @ np.full(parameters, 0.5) + rng.normal(0, 0.1, data)
+        best = np.clip(np.linalg.lstsq(x, y, rcond=None)[0], 0, 1)
+        candidates: Any = np.vstack([points, best])  # a fit tries the minimum, too
+        low, high = Emulator(candidates, candidates @ x.T, y).interval(0)
+        inside += (low is None or low <= 0.5) and (high is None or high >= 0.5)
+    assert 0.92 < inside / runs < 0.98  # 0.95, and about twice the standard error of 200 runs
