@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from itertools import product
 from pathlib import Path
@@ -15,6 +15,11 @@ from typing import Any
 
 import pytest
 
+from actr3d.experiment.design import Trial
+from actr3d.experiment.report.beside import beside_experiment, fit_to, matched
+from actr3d.experiment.report.results import by_number, read_results
+from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.reports import store_rows
 from workbench.experiment_means import means
 from workbench.experiment_table import TableError
 
@@ -184,6 +189,45 @@ def test_a_group_without_a_value_of_a_parameter_has_its_default(tmp_path: Path) 
     found = compared(tmp_path, varied, plain, by=["group"], **more)
     assert points(found) == [[1, "a", 3, 1], [1, "b", 1, 1]]
     assert points(found["beside"]) == [[1, "a", 3, 1], [1, "b", 5, 1]]
+
+
+def test_the_report_compares_the_same_means(tmp_path: Path) -> None:
+    """Of two experiments with unequal groups, one of which varies m, with failed trials: over the same conditions."""
+    random = Random(4)
+
+    def experiment(name: str, factors: str, people: Sequence[int], fails: Callable[[Mapping[str, Any], str], bool]) -> Path:
+        (tmp_path / name).mkdir()
+        path = write_experiment(tmp_path / name, factors=factors, trials=3, model=COUNTER.replace("n = 3", "n = 3\nm = 1"))
+        groups = ", ".join(f'"{group}": Group(participants={number})' for group, number in zip(("small", "big"), people, strict=True))
+        path.write_text(path.read_text("utf-8").replace('"all": Group(participants=2)', groups), "utf-8")
+
+        def measured(trial: Trial) -> dict[str, Any]:
+            failed = trial.repetition == 1 and fails(trial.values, trial.participant.group)
+            return {"error": "no"} if failed else {"rt": random.random(), "luck": 0.5 if trial.number % 5 else None}
+
+        return store_rows(tmp_path / name / "rows", str(path), measured)
+
+    folders = (
+        experiment("one", '{"n": [1, 2], "m": [1, 3]}', (2, 3), lambda values, _: (values["n"], values["m"]) == (2, 3)),
+        experiment("two", '{"n": [1, 2, 5]}', (4, 1), lambda values, group: (values["n"], group) == (1, "small")),
+    )
+    defaults: Sequence[Mapping[str, Any]] = ({}, {"m": 1})
+    for (mine, theirs), order in ((folders, 1), (folders[::-1], -1)):
+        tables = [folder / "trials.sqlite" for folder in (mine, theirs)]
+        parts = by_number(read_results(mine))
+        beside = beside_experiment(by_number(read_results(theirs)), parts)
+        assert beside is not None
+        for measure in ("rt", "luck"):
+            found = means(*tables, x="n", by=["group"], measure=measure, factors=["n", "m"], defaults=defaults[::order])
+            cells = matched(parts[0], beside, measure)
+            for points, column in ((found["points"], "model"), (found["beside"]["points"], "beside")):
+                report = {(n, group): mean for n, group, mean in zip(cells["n_"], cells["group"], cells[column], strict=True)}
+                assert {tuple(point["at"]): pytest.approx(point["mean"]) for point in points} == report
+                assert report.keys() == {(1, "big"), (2, "small"), (2, "big")}
+            assert found["failed"]["conditions"] == 3
+            assert found["beside"]["left_out"]["conditions"] == 2
+        assert list(fit_to(parts, beside)["cells"]) == [3, 3]
+        assert list(fit_to(parts, beside)["left_out"]) == ([3, 3] if order > 0 else [5, 5])
 
 
 def alone(folder: Path, rows: Sequence[Row], **options: Any) -> list[dict[str, Any]]:
