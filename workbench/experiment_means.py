@@ -35,7 +35,7 @@ MISSING: Level = "missing", 0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shown:
+class MeansFigure:
     """What a figure shows."""
 
     place: Sequence[str]
@@ -72,19 +72,19 @@ def means(
         paths: The tables.
         x: The column along the axis.
         by: The columns whose combinations are the lines.
-        measure: See `Shown`.
+        measure: See `MeansFigure`.
         factors: The factors of all the experiments.
-        over: See `Shown`.
+        over: See `MeansFigure`.
         defaults: For each table, the values of factors that are only in the other one, for trials in which they are no column.
 
     Raises:
         Actr3dError: If a table cannot be read as requested, there are too many points, or the measure has another unit in each.
     """
     condition = [name for name in dict.fromkeys([*factors, "group"]) if name != over]
-    shown = Shown(place=[x, *by], measure=measure, over=over, condition=condition)
+    figure = MeansFigure(place=[x, *by], measure=measure, over=over, condition=condition)
     with ExitStack() as stack:
         tables = [stack.enter_context(closing(Table(path))) for path in paths]
-        trials = [_Trials(table, shown, more) for table, more in zip(tables, defaults or [{} for _ in tables], strict=True)]
+        trials = [_Trials(table, figure, more) for table, more in zip(tables, defaults or [{} for _ in tables], strict=True)]
         points = {"points": trials[0].points()} if len(trials) == 1 else _compared(*trials)
         return {"x": x, "by": list(by), "measure": measure, "unit": trials[0].unit, "columns": tables[0].columns, **points}
 
@@ -92,7 +92,7 @@ def means(
 def _compared(mine: _Trials, theirs: _Trials) -> dict[str, Any]:
     """Returns the points of two experiments, and what is left out, see `means`."""
     if mine.unit and theirs.unit and mine.unit != theirs.unit:
-        raise TableError(f"its {mine.shown.measure} is in {theirs.unit}, and here in {mine.unit}")
+        raise TableError(f"its {mine.figure.measure} is in {theirs.unit}, and here in {mine.unit}")
     both = mine.conditions(), theirs.conditions()
     failed = both[0].failed | both[1].failed
     trials = [one.leave_out(failed) for one in both]
@@ -113,23 +113,23 @@ class _Trials:
 
     Args:
         table: Their table.
-        shown: What the figure shows.
+        figure: What the figure shows.
         defaults: See `means`.
 
     Raises:
         TableError: If there is no such column, or the measure has no numbers.
     """
 
-    def __init__(self, table: Table, shown: Shown, defaults: Mapping[str, Any]) -> None:
-        self.shown = shown
-        self.names = [*shown.condition, *([] if shown.over is None else [shown.over])]
+    def __init__(self, table: Table, figure: MeansFigure, defaults: Mapping[str, Any]) -> None:
+        self.figure = figure
+        self.names = [*figure.condition, *([] if figure.over is None else [figure.over])]
         """The names of what makes a condition."""
         self._table, self._defaults = table, defaults
-        self._columns = table.numbered(shown.measure, shown.over)
-        self._of_condition = [name for name in shown.condition if name in table]
+        self._columns = table.numbered(figure.measure, figure.over)
+        self._of_condition = [name for name in figure.condition if name in table]
         self._often_default = [name for name in self._of_condition if name in defaults]
-        for name in shown.place:
-            if name != shown.over and (name not in table or name in OUTSIDE):
+        for name in figure.place:
+            if name != figure.over and (name not in table or name in OUTSIDE):
                 raise TableError(f"there is no column '{name}' in the trials themselves")
 
     @property
@@ -155,7 +155,7 @@ class _Trials:
                 if conditions:
                     points.append({"at": self._at(place, number), **_mean(conditions)})
                 if len(points) > MAX_POINTS:
-                    raise TableError(f"{' and '.join(self.shown.place)} have too many different values for a figure")
+                    raise TableError(f"{' and '.join(self.figure.place)} have too many different values for a figure")
         return sorted(points, key=lambda point: [*map(_level, point["at"])])
 
     def conditions(self) -> _Conditions:
@@ -165,12 +165,12 @@ class _Trials:
             TableError: If there are too many.
         """
         values, failed = f"sum({NUMERIC})", f"sum({FAILED})"
-        levels_of, found = cache(self._levels), _Conditions(len(self.shown.condition), len(self.names))
+        levels_of, found = cache(self._levels), _Conditions(len(self.figure.condition), len(self.names))
         with closing(self._select(f"{values}, {failed}", f"GROUP BY 1, 2, 3 HAVING {values} OR {failed}")) as combinations:
             for read, (place, number, condition, trials, failures) in enumerate(combinations):
                 if read == MAX_COMBINATIONS:
                     raise TableError(f"{' and '.join(self.names)} have too many different values for a comparison")
-                levels = levels_of(condition) if self.shown.over is None else (*levels_of(condition), _level(number))
+                levels = levels_of(condition) if self.figure.over is None else (*levels_of(condition), _level(number))
                 at = tuple(map(_level, self._at(*self._place_of((place, number)))))
                 found.add((place, number, condition), at, levels, trials, failures)
         return found
@@ -181,17 +181,17 @@ class _Trials:
         for name in self._often_default:
             condition = f"(json_type(data, {json_path(name)}) IS NULL) || {condition}"
         parts = [f"SELECT data, {number} AS number, {self._table.value(name)} AS value FROM trial" for number, name in self._columns]
-        place = _as_json([name for name in self.shown.place if name != self.shown.over])
+        place = _as_json([name for name in self.figure.place if name != self.figure.over])
         return self._table.select(f"SELECT {place}, number, {condition}, {what} FROM ({' UNION ALL '.join(parts)}) {more}")
 
     def _place_of(self, cell: Sequence[Any]) -> tuple[str, int]:
         """Returns the place of a combination: its columns, and its number if the number is part of it."""
-        return cell[0], cell[1] if self.shown.over in self.shown.place else 0
+        return cell[0], cell[1] if self.figure.over in self.figure.place else 0
 
     def _at(self, place: str, number: int) -> list[Any]:
         """Returns the values of a place; a list is a text, as in the rows."""
         values = iter(json.loads(place))
-        found = [number if name == self.shown.over else next(values) for name in self.shown.place]
+        found = [number if name == self.figure.over else next(values) for name in self.figure.place]
         return [json.dumps(value, separators=(",", ":")) if isinstance(value, (list, dict)) else value for value in found]
 
     def _levels(self, condition: str) -> tuple[Level, ...]:
@@ -200,7 +200,7 @@ class _Trials:
         given = dict(zip(self._of_condition, json.loads(condition[count:]), strict=False))
         absent = {name for name, flag in zip(reversed(self._often_default), condition, strict=False) if flag == "1"}
         values = {**self._defaults, **{name: value for name, value in given.items() if name not in absent}}
-        return tuple(_level(values[name]) if name in values else MISSING for name in self.shown.condition)
+        return tuple(_level(values[name]) if name in values else MISSING for name in self.figure.condition)
 
 
 class _Conditions:
