@@ -517,8 +517,7 @@ def paced(folder: Path, factors: str, default: str = "1.0") -> Results:
         (
             ', settings={"pace": Uniform(low=1, high=3)}',
             [],
-            "Only this experiment varies pace, and rows has no one level of it: it was drawn for each participant or trial, or is no "
-            "parameter there with a known default. The means are not compared.",
+            "Only this experiment varies pace, and rows drew it for each participant or trial. The means are not compared.",
         ),
     ],
 )

@@ -191,7 +191,8 @@ def levels_compared(results: Results, other: Results) -> list[str | Caution]:
         elsewhere = other.label if fixed is other else "this experiment"
         ran = ", ".join(f"{plain_text(level)}{_unit(varying, name)}" for level in dict.fromkeys(of_groups.values()))
         if not of_groups:
-            why = "has no one level of it: it was drawn for each participant or trial, or is no parameter there with a known default"
+            drawn = not {name, name.removesuffix("_")}.isdisjoint(fixed.rows)
+            why = "drew it for each participant or trial" if drawn else "has no such parameter with a known default"
             found.append(Caution(f"Only {which} varies {what}, and {elsewhere} {why}. The means are not compared."))
         elif set(levels).isdisjoint(of_groups.values()):
             found.append(Caution(f"Only {which} varies {what}, and {elsewhere} ran at another level, {ran}. The means are not compared."))
