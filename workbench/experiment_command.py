@@ -61,7 +61,7 @@ class ExperimentFacts(ExperimentEvent, frozen=True, kw_only=True, tag="facts"):
     model: str = ""
     """The model file."""
     parameters: list[dict[str, Any]] = []
-    """The parameters of the model: name, help, unit, default, choices."""
+    """The parameters of the model: name, help, unit, default, whether it is `known`, choices."""
 
 
 class TriedFacts(ExperimentFacts, frozen=True, kw_only=True, tag="check"):

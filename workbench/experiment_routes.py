@@ -14,7 +14,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from actr3d.values import escape_surrogates, to_json
 from workbench.design_files import MOST, CheckRequest, Level, StartRequest, Workers, designs_of
 from workbench.disconnects import while_connected
-from workbench.experiment_command import ExperimentRunError
+from workbench.experiment_command import ExperimentFacts, ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile
@@ -146,7 +146,11 @@ async def rows(
     `where` is a JSON object with the values that the rows have, by column; `sort` a column; with `failed` only failed trials.
     """
     options = {"first": first, "most": most, "where": _where(where), "sort": sort, "down": down, "failed": failed}
-    return await _made(request, "trial rows", experiment, {"total": 0, "first": first, "columns": [], "rows": []}, **options)
+    experiments = experiments_of(request)
+    table = experiments.folder(experiment).table
+    if table is None:
+        return _json({"total": 0, "first": first, "columns": [], "rows": []})
+    return OpenFile(await while_connected(experiments.readers.make("trial rows", table, **options), request.receive), "application/json")
 
 
 @router.get("/experiments/{experiment}/means")
@@ -159,20 +163,35 @@ async def means(
     over: Column | None = None,
     beside: Annotated[str | None, Query(min_length=1, max_length=160)] = None,
 ) -> Response:
-    """Returns the mean of a measure for each combination of the values of columns, over participants, with its standard error.
+    """Returns the mean of a measure for each combination of the values of columns, with its standard error over participants.
 
     `{points: [{at: [value of x and of each column of by], mean, error, participants, trials}]}`; of True and False, the share of True.
+    The mean is that of the conditions there (combinations of levels of all factors, a group, and a number), each of which weighs the same.
     With `over`, the measure has a column for each number, `measure_1`, `measure_2`, ..., and `over` is the name of the column of numbers.
 
-    `beside` is another experiment: then the means of both are over the conditions that both have. `{points, left_out, beside: {points,
-    left_out}, apart}`: `left_out: {conditions, trials}` are those that only one of them has, and `apart` the factors without a common
-    level.
+    `beside` is another experiment: then the means of both are over the conditions that both have and in which no trial failed. `{points,
+    left_out, beside: {points, left_out}, failed, apart}`: `left_out: {conditions, trials}` are those that only one of them has, `failed:
+    {conditions, trials: [of one, of the other]}` those in which a trial failed, and `apart` the factors without a common level.
     """
-    options = {"x": x, "by": by or [], "measure": measure, "over": over}
-    if beside is not None:
-        return await _means_of_two(request, experiment, beside, **options)
-    empty = {"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []}
-    return await _made(request, "trial means", experiment, empty, **options)
+    names = [experiment] if beside is None else [experiment, beside]
+    facts: list[ExperimentFacts] = []
+    tables: list[Path] = []
+    for folder in map(experiments_of(request).folder, names):
+        known, table = folder.facts, folder.table
+        if table is None and beside is None:
+            return _json({"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []})
+        if known is None or table is None:
+            raise ExperimentRunError("its factors are not known" if known is None else "none of its trials has finished")
+        facts.append(known)
+        tables.append(table)
+    factors = {name for one in facts for name in one.factors}
+    defaults = [
+        {of["name"]: of["default"] for of in one.parameters if of.get("known", True) and of["name"] in factors - one.factors.keys()}
+        for one in facts
+    ]
+    options = {"x": x, "by": by or [], "measure": measure, "over": over, "factors": sorted(factors), "defaults": defaults}
+    work = experiments_of(request).readers.make("trial means", *tables, **options)
+    return OpenFile(await while_connected(work, request.receive), "application/json")
 
 
 @router.post("/experiments/{experiment}/trial")
@@ -208,37 +227,6 @@ def _report_file(request: Request, experiment: str, file: str, download: str | N
     if path is None:
         return _json({"error": "the report has no such file, or it has not been made yet"}, 404)
     return OpenFile(path.open("rb", buffering=0), REPORT_FILES[path.suffix], download)
-
-
-async def _made(request: Request, form: str, name: str, empty: dict[str, Any], **options: Any) -> Response:
-    """Returns what a worker makes of a table of trials; `empty` if there is none yet."""
-    experiments = experiments_of(request)
-    table = experiments.folder(name).table
-    if table is None:
-        return _json(empty)
-    work = experiments.readers.make(form, table, **options)
-    return OpenFile(await while_connected(work, request.receive), "application/json")
-
-
-async def _means_of_two(request: Request, *names: str, **options: Any) -> Response:
-    """Returns what a worker makes of the tables of two experiments.
-
-    Raises:
-        ExperimentRunError: If one has no trial yet, or its factors are not known.
-    """
-    experiments = experiments_of(request)
-    factors: list[str] = []
-    tables: list[Path] = []
-    parameters: list[dict[str, Any]] = []
-    for folder in map(experiments.folder, names):
-        facts, table = folder.facts, folder.table
-        if facts is None or table is None:
-            raise ExperimentRunError("its factors are not known" if facts is None else "none of its trials has finished")
-        factors += facts.factors
-        parameters.append({one["name"]: one["default"] for one in facts.parameters})
-        tables.append(table)
-    work = experiments.readers.make("trial means of two", *tables, **options, factors=factors, fixed=parameters)
-    return OpenFile(await while_connected(work, request.receive), "application/json")
 
 
 def _where(text: str) -> dict[str, Any]:

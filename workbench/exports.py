@@ -20,7 +20,8 @@ from actr3d.values import to_json
 from workbench.csv_files import write_events_csv, write_states_csv
 from workbench.curves import CurveReader, joined, stretch, thinned
 from workbench.event_curves import EventCurves
-from workbench.experiment_table import Table, counts, means_of_two
+from workbench.experiment_means import means
+from workbench.experiment_table import Table, counts
 from workbench.html_replay.make import write_replay
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
@@ -69,14 +70,10 @@ def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: in
     return of_events.added_to(joined(map(sampled, found)), names, first, last, most)
 
 
-def _from_table(what: Callable[..., Any]) -> Callable[..., Any]:
-    """Returns a function of the path of a table of trials, and of the options of a method of `Table`."""
-
-    def read(path: Path, **options: Any) -> Any:
-        with closing(Table(path)) as table:
-            return what(table, **options)
-
-    return read
+def _rows(path: Path, **options: Any) -> Any:
+    """Returns rows of a table of trials, as `Table.rows` does."""
+    with closing(Table(path)) as table:
+        return table.rows(**options)
 
 
 def _write(make: Callable[..., Any], as_text: Callable[[Any], str] = to_json) -> Callable[..., None]:
@@ -98,8 +95,7 @@ EXPORTS: dict[str, Callable[..., None]] = {
     "comparison": _write(compare),
     "recorded start": _write(recorded_start_of, RecordedStart.to_json),
     "trial counts": _write(lambda *tables: counts(*tables)),
-    "trial rows": _write(_from_table(Table.rows)),
-    "trial means": _write(_from_table(Table.means)),
-    "trial means of two": _write(means_of_two),
+    "trial rows": _write(_rows),
+    "trial means": _write(means),
 }
 """By the kind of file, the function that writes it: called with the paths of recordings or tables, that of the new file, and options."""

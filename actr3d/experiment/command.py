@@ -347,7 +347,14 @@ def facts_of(experiment: Experiment) -> dict[str, Any]:
         "seed": design.seed,
         "model": specification.model.file,
         "parameters": [
-            {"name": one.name, "help": one.help, "unit": one.unit, "default": one.default if one.known else None, "choices": one.choices}
+            {
+                "name": one.name,
+                "help": one.help,
+                "unit": one.unit,
+                "default": one.default if one.known else None,
+                "known": one.known and not one.required,
+                "choices": one.choices,
+            }
             for one in experiment.parameters
         ],
     }

@@ -6,7 +6,7 @@ import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
-import { CanvasSurface, scaled } from "../parts/surface.js";
+import { CanvasSurface, scaled, wrapped } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { remembered } from "../local_storage.js";
 import { dark } from "../theme.js";
@@ -153,12 +153,23 @@ const isDrawn = ({ points, beside }) => points.length > 0 && beside.points.lengt
 
 /** Returns what two experiments are compared of, if not of all that each of them has; an empty text if there is nothing to say. */
 function comparisonText(pair, other, over) {
+  const { conditions: failed } = pair.failed;
+  const whole = failed > 0 ? " in which no trial failed" : "";
   if (!isDrawn(pair)) {
-    return `${experimentText(other)} is not drawn: it has no condition in common with this experiment${pair.apart.length > 0 ? ` (no level of ${pair.apart.map(columnText).join(" or ")})` : ""}.`;
+    return `${experimentText(other)} is not compared: it has no condition${whole} in common with this experiment${pair.apart.length > 0 ? ` (no level of ${pair.apart.map(columnText).join(" or ")})` : ""}.`;
   }
-  const parts = [[pair.left_out, "this experiment"], [pair.beside.left_out, experimentText(other)]].filter(([{ trials }]) => trials > 0);
-  const left = parts.map(([{ conditions, trials }, whose]) => `${conditions > 0 ? `${counted(conditions, "condition")} with ` : ""}${counted(trials, over ? "value" : "trial")} of ${whose}`);
-  return left.length > 0 ? `Only conditions that both experiments have are compared, and each weighs the same; left out: ${left.join(", ")}.` : "";
+  const of = (trials, whose) => `${counted(trials, over ? "value" : "trial")} of ${whose}`;
+  const names = ["this experiment", experimentText(other)];
+  const alone = [pair.left_out, pair.beside.left_out].flatMap(({ conditions, trials }, n) => (trials > 0 ? [`${conditions > 0 ? `${counted(conditions, "condition")} with ` : ""}${of(trials, names[n])}`] : []));
+  const left = failed > 0 ? [...alone, `${counted(failed, "condition")} in which a trial failed, with ${names.map((whose, n) => of(pair.failed.trials[n], whose)).join(" and ")}`] : alone;
+  return left.length > 0 ? `Only conditions that both experiments have${whole ? ", and in which no trial failed," : ""} are compared. Left out: ${left.join("; ")}.` : "";
+}
+
+/** Returns what the points of a figure and their bars are. */
+function meansText(points) {
+  const without = points.filter(({ error }) => error === null).length;
+  const bars = without < points.length ? ", ± 1 standard error over participants" : "";
+  return `Means of the conditions, each weighing the same${bars}.${without > 0 ? " No bar where a condition has one participant." : ""}`;
 }
 
 /** The choice of another experiment to draw beside this one. */
@@ -194,7 +205,7 @@ function Plot({ lines, known, about, children }) {
   const { width, height } = size.value;
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
   const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...about.entries];
-  const caption = `Means over participants, ± 1 standard error. ${about.counts}`;
+  const caption = `${meansText(lines.flatMap((line) => line.points))} ${about.counts}`;
   const title = headText({ name: about.measure, unit: about.unit });
 
   useEffect(() => {
@@ -208,8 +219,8 @@ function Plot({ lines, known, about, children }) {
   }, [lines, figure, dark.value]);
 
   function save(kind) {
-    const notes = [caption, about.comparison].filter(Boolean);
     const [wide, high] = [Math.max(640, width), Math.max(360, height)];
+    const notes = [caption, about.comparison].filter(Boolean).flatMap((text) => wrapped(text, wide));
     const entries = layoutLegend(legend, wide);
     const draw = (surface) => {
       drawLegend(surface, entries);
@@ -288,7 +299,7 @@ export function Figure({ experiment, facts, columns: all }) {
   const drawn = together ? [experiment, other] : [experiment];
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const problem = other && both.error;
-  const error = alone.error ?? (problem ? `${other.name}: ${problem}` : null);
+  const error = alone.error ?? (problem ? `${experimentText(other)} is not compared: ${problem}.` : null);
   const comparison = pair ? comparisonText(pair, other, chosen.over) : "";
   if (failed) {
     return html`<p class="part empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;

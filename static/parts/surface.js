@@ -24,6 +24,17 @@ export function widthOf(text, style = {}) {
   return width;
 }
 
+/** Returns the lines of a text that is broken between words, none of which is wider than a width, unless a word is. */
+export function wrapped(text, most, style) {
+  const lines = [];
+  for (const word of text.split(" ")) {
+    const longer = `${lines.at(-1)} ${word}`;
+    if (lines.length > 0 && widthOf(longer, style) <= most) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
 /** Returns as much of a text as fits, with an ellipsis if it is cut. */
 export function cut(text, most, style = {}) {
   const line = text.length > 400 ? text.slice(0, 400) : text;

@@ -564,18 +564,19 @@ def means(points: list[dict[str, Any]], by: list[str] | None = None, **more: Any
 
 
 NOTHING_LEFT_OUT = {"conditions": 0, "trials": 0}
+NO_FAILURES = {"conditions": 0, "trials": [0, 0]}
 
 
 def test_an_experiment_without_a_common_condition_is_not_drawn_beside(blank: Page) -> None:
     points = [{"at": [n], "mean": 0.1, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
     left_out = {"conditions": 2, "trials": 4}
-    apart = means([], left_out=left_out, beside={"points": [], "left_out": left_out}, apart=["ink", "goal_m"])
+    apart = means([], left_out=left_out, beside={"points": [], "left_out": left_out}, failed=NO_FAILURES, apart=["ink", "goal_m"])
     blank.route("**/means?*", lambda route: route.fulfill(json=apart if "beside=theirs" in route.request.url else means(points)))
     blank.evaluate(TWO_EXPERIMENTS)
     blank.get_by_label("Compare with").select_option("theirs")
     warning = blank.locator("#drawn .problem")
     expect(warning).to_have_text(
-        re.compile(r"^theirs .* is not drawn: it has no condition in common with this experiment \(no level of ink or goal\)\.$")
+        re.compile(r"^theirs .* is not compared: it has no condition in common with this experiment \(no level of ink or goal\)\.$")
     )
     expect(blank.locator("#drawn .point")).to_have_count(2)
     blank.get_by_label("Compare with").select_option("")
@@ -611,8 +612,8 @@ def test_two_experiments_are_compared_over_the_conditions_that_both_have(pages: 
     expect(page.locator(".means .pointed")).to_contain_text("4 of 8 trials; of the other experiment, 4 of 8 trials")
     expect(page.locator(".problem")).to_have_text(
         re.compile(
-            "^Only conditions that both experiments have are compared, and each weighs the same; "
-            "left out: 2 conditions with 4 trials of counting .*[.]$"
+            "^Only conditions that both experiments have, and in which no trial failed, are compared. "
+            "Left out: 2 conditions in which a trial failed, with 0 trials of this experiment and 4 trials of counting .*[.]$"
         )
     )
     shutil.rmtree(folder)
@@ -623,12 +624,14 @@ def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -
         return [{"at": [n], "mean": mean * n, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
 
     theirs = {"points": points_of(0.2), "left_out": NOTHING_LEFT_OUT}
-    both = means(points_of(0.1), left_out=NOTHING_LEFT_OUT, beside=theirs, apart=[])
+    both = means(points_of(0.1), left_out=NOTHING_LEFT_OUT, beside=theirs, failed=NO_FAILURES, apart=[])
     blank.route("**/means?*", lambda route: route.fulfill(json=both if "beside=theirs" in route.request.url else means(points_of(0.1))))
     blank.evaluate(TWO_EXPERIMENTS)
     points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
     expect(points).to_have_count(2)
-    expect(blank.locator("#drawn .pointed")).to_have_text("Means over participants, ± 1 standard error. 4 of 5 trials")
+    expect(blank.locator("#drawn .pointed")).to_have_text(
+        "Means of the conditions, each weighing the same. No bar where a condition has one participant. 4 of 5 trials"
+    )
     expect(legend).to_have_text("")
     choice = blank.get_by_label("Compare with")
     expect(choice.locator("option")).to_have_count(2)  # without the experiment that has no such measure
@@ -661,8 +664,9 @@ def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(bl
             for n in (1, 2)
             for level in ("first", "other", "third")
         ]
-        beside = {"points": points, "left_out": NOTHING_LEFT_OUT}
-        route.fulfill(json=means(points, ["kind"], left_out=NOTHING_LEFT_OUT, beside=beside, apart=[]))
+        left_out, failed = {"conditions": 2, "trials": 9}, {"conditions": 1, "trials": [3, 4]}
+        beside = {"points": points, "left_out": left_out}
+        route.fulfill(json=means(points, ["kind"], left_out=left_out, beside=beside, failed=failed, apart=[]))
 
     blank.route("**/means?*", answer)
     blank.evaluate(TWO_EXPERIMENTS)
@@ -678,4 +682,21 @@ def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(bl
     assert mine.startswith("mine ")
     assert theirs.startswith("theirs ")
     assert "n [m]" in rest, "each axis has its unit"
-    assert rest[-1].startswith("Means over participants, ± 1 standard error.")
+    notes = " ".join(rest)
+    assert "Means of the conditions, each weighing the same, ± 1 standard error over participants. 24 of 5 trials; " in notes
+    assert "Left out: 2 conditions with 9 trials of this experiment; " in notes
+    assert re.search(r"; 1 condition in which a trial failed, with 3 trials of this experiment and 4 trials of theirs .*[.]$", notes)
+
+
+def test_an_experiment_that_cannot_be_compared_is_named_as_elsewhere(pages: Callable[..., Page]) -> None:
+    page = pages(refusals=True)
+    points = [{"at": [n], "mean": 0.1, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
+    refused = {"error": "its rt is in ms, and here in s"}
+    page.route(
+        "**/means?*",
+        lambda route: route.fulfill(status=409, json=refused) if "beside=" in route.request.url else route.fulfill(json=means(points)),
+    )
+    page.evaluate(TWO_EXPERIMENTS)
+    page.get_by_label("Compare with").select_option("theirs")
+    expect(page.locator("#drawn .problem")).to_have_text(re.compile(r"^theirs [^ ].* is not compared: its rt is in ms, and here in s\.$"))
+    expect(page.locator("#drawn .point")).to_have_count(2)

@@ -24,7 +24,7 @@ from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
-from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, fit_to, human_data_of, missing
+from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, fit_to, human_data_of
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
@@ -496,30 +496,56 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
     assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
 
 
+def paced(folder: Path, factors: str, default: str = "1.0") -> Results:
+    """Returns an experiment whose model has a parameter `pace`; the reaction time is n + 10 times the pace, as far as they are numbers."""
+    folder.mkdir()
+    path = write_experiment(folder, factors=factors, model=COUNTER.replace("n = 3", f"n = 3\npace = {default}"))
+
+    def measures(trial: Any) -> dict[str, Any]:
+        n, pace = trial.values.get("n", 3), trial.values.get("pace", 1.0)
+        return {"rt": n + 10 * pace if isinstance(pace, float) else n, "luck": 0.5}
+
+    return read_results(store_rows(folder / "rows", str(path), measures))
+
+
 @pytest.mark.parametrize(
-    ("there", "paces", "common"),
+    ("there", "common", "said"),
     [
-        ("Uniform(low=1, high=3)", [None], 1),  # a mean over all of theirs, with that over all of ours
-        ("2.0", [2.0], 1),
-        ("7.0", [7.0], 0),
+        ("", [13.0], "Only this experiment varies pace. The means are compared at the level at which rows ran: 1."),
+        (', settings={"pace": 2.0}', [23.0], "Only this experiment varies pace. The means are compared at the level at which rows ran: 2."),
+        (', settings={"pace": 7.0}', [], "Only this experiment varies pace, and rows ran at another level, 7. The means are not compared."),
+        (
+            ', settings={"pace": Uniform(low=1, high=3)}',
+            [],
+            "Only this experiment varies pace, and rows drew it for each participant or trial. The means are not compared.",
+        ),
     ],
 )
-def test_another_experiment_has_a_cell_for_each_value_that_is_fixed_there(
-    tmp_path: Path, there: str, paces: list[float | None], common: int
+def test_a_factor_that_one_experiment_varies_is_compared_at_the_level_of_the_other(
+    tmp_path: Path, there: str, common: list[float], said: str
 ) -> None:
-    def experiment(name: str, given: str) -> Results:
-        (tmp_path / name).mkdir()
-        path = write_experiment(tmp_path / name, factors=given, model=COUNTER.replace("n = 3", "n = 3\npace = 1.0"))
-        return read_results(store_rows(tmp_path / name / "rows", str(path), lambda _: {"rt": 1.0, "luck": 0.5}))
+    one = paced(tmp_path / "one", '{"pace": [1.0, 2.0, 3.0]}')
+    two = paced(tmp_path / "two", f'{{"n": [1, 3]}}{there}')
+    for results, other in ((one, two), (two, one)):
+        beside = beside_experiment([other], [results])
+        parts = comparison_section(results, other, [results], beside).parts
+        means = frames(parts)["means_beside_other"].query("measure == 'rt'") if common else pandas().DataFrame({"model": [], "beside": []})
+        assert list(means["model"]) == list(means["beside"]) == common
+        agreement = frames(parts)["fit_to_other"] if common else pandas().DataFrame({"left_out": []})
+        assert list(agreement["left_out"]) == [2 if other is one else 1] * 2 * len(common)
+        assert ("have no cell in common" in cautions(parts)) == (not common)
+    parts = comparison_section(one, two, [one], beside_experiment([two], [one])).parts
+    assert said in [part.text if isinstance(part, Caution) else part for part in parts]
 
-    one = experiment("one", '{"pace": [1.0, 2.0, 3.0]}')
-    two = experiment("two", f'{{"n": [1, 2]}}, settings={{"pace": {there}}}')
-    beside = beside_experiment([two], [one])
-    assert beside is not None
-    assert [None if missing(pace) else pace for pace in beside.of("rt")["pace"]] == paces
-    parts = comparison_section(one, two, [one], beside).parts
-    assert len(frames(parts).get("means_beside_other", ())) == common * len(["rt", "luck"])
-    assert ("have no cell in common" in cautions(parts)) == (not common)
+
+@pytest.mark.parametrize(("levels", "default"), [('[None, "red"]', "None"), ("[[0, 1], [0, 5]]", "[0, 1]"), ("[True, False]", "True")])
+def test_a_default_that_is_no_number_is_a_level_too(tmp_path: Path, levels: str, default: str) -> None:
+    one = paced(tmp_path / "one", f'{{"n": [1, 2], "pace": {levels}}}', default)
+    for name, given in (("two", ""), ("three", f', settings={{"pace": {default}}}')):
+        two = paced(tmp_path / name, f'{{"n": [1, 2]}}{given}', default)
+        beside = beside_experiment([two], [one])
+        assert beside is not None
+        assert list(fit_to([one], beside)["cells"]) == [2, 2]
 
 
 def test_an_experiment_in_a_folder_with_the_name_of_a_column_is_compared(tmp_path: Path) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from actr3d.experiment.design import Design
-from actr3d.experiment.human_data import HumanData, Schema, library_human_data, read_human_data
+from actr3d.experiment.human_data import HumanData, Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas
@@ -32,9 +32,11 @@ class Beside:
     """A `DataFrame` with `group`, the factors of the design, `measure`, `mean`, `sd`, `low`, `high` and `n`; a group or a level that is
     None (NaN for numbers) is a mean over all."""
     results: Results | None = None
-    """The trials of another experiment; None for people."""
+    """The trials of another experiment, as `at_common_levels` returns them; None for people."""
     trials: Any = None
     """The trials of people, a `DataFrame` with the columns of their file that a report uses; None for published means."""
+    left_out: Mapping[str, int] = field(default_factory=dict[str, int])
+    """How many more means another experiment has of each measure: those at other levels than this one ran at."""
 
     def of(self, measure: str) -> Any:
         """Returns the rows of a measure."""
@@ -115,30 +117,83 @@ def beside_people(data: HumanData, parts: Sequence[Results]) -> Beside:
 
 
 def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Beside | None:
-    """Returns the means of another experiment; None if it has no measure in common."""
-    pd, pieces = pandas(), list[Any]()
+    """Returns the means of another experiment, at the levels at which both ran; None if it has no measure in common, or no such trials."""
+    pd, pieces, left_out = pandas(), list[Any](), dict[str, int]()
     for part, other in itertools.product(parts, others):
         if part.numbers.keys() == other.numbers.keys():
-            by = ["group", *(name for name in part.all_factors if _is_fixed(other, name))]
-            common = [name for name in part.measures if name in other.measures and same_unit(part, other, name)]
-            pieces += [cell_means(other.rows, measure, by).assign(measure=measure) for measure in common]
-    if not pieces:
+            alike = at_common_levels(other, part)
+            for measure in part.measures:
+                if measure in other.measures and same_unit(part, other, measure):
+                    cells = cell_means(alike.rows, measure, ["group", *part.all_factors])
+                    pieces.append(cells.assign(measure=measure))
+                    whole = other.rows[other.rows[measure].notna()].groupby(["group", *other.all_factors], observed=True)
+                    left_out[measure] = whole.ngroups - len(cells)
+    if not any(map(len, pieces)):
         return None
-    frame = pd.concat(pieces, ignore_index=True)
+    frame = pd.concat([piece for piece in pieces if len(piece)], ignore_index=True)
     columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
-    return Beside(label=others[0].label, look="other", frame=frame.reindex(columns=columns), results=others[0])
+    results = at_common_levels(others[0], parts[0])
+    return Beside(label=results.label, look="other", frame=frame.reindex(columns=columns), results=results, left_out=left_out)
+
+
+def at_common_levels(other: Results, results: Results) -> Results:
+    """Returns the trials of another experiment at the levels at which an experiment ran, of the factors that only one of them varies.
+
+    The one that does not vary a factor ran at one level in each group: that of its settings, of the group, or the default of the
+    parameter. Groups for which it was drawn for each participant or trial, or that have no such parameter, are left out.
+    """
+    rows, failures = other.rows, other.failures
+    for name, (whose, levels) in varied_once(results, other).items():
+        of_groups = ran_at(other if whose is results else results, name, levels)
+        if whose is results:
+            rows, failures = (frame[frame["group"].isin(of_groups)] for frame in (rows, failures))
+            rows, failures = (frame.assign(**{name: frame["group"].map(of_groups)}) for frame in (rows, failures))
+        else:
+            rows, failures = (frame[frame["group"].map(of_groups) == frame[name]] for frame in (rows, failures))
+    return replace(other, rows=rows.reset_index(drop=True), failures=failures.reset_index(drop=True))
+
+
+def varied_once(one: Results, other: Results) -> dict[str, tuple[Results, list[float] | list[str]]]:
+    """Returns the factors that only one of two experiments varies: by name, which one, and the levels."""
+    pairs = ((one, other), (other, one))
+    return {name: (mine, levels) for mine, theirs in pairs for name, levels in mine.all_factors.items() if name not in theirs.all_factors}
+
+
+def ran_at(results: Results, name: str, levels: Sequence[Any]) -> dict[str, float | str]:
+    """Returns the level at which each group of an experiment ran that does not vary a factor; without groups that have no one level.
+
+    Args:
+        results: The experiment.
+        name: The name of the factor in another experiment.
+        levels: Its levels there: numbers, or texts.
+    """
+    raw = name.removesuffix("_") if factor_name(name.removesuffix("_")) == name else name
+    design, column, parameter = results.design, results.columns.get(raw), results.parameters.get(raw)
+    known = parameter is not None and parameter.known and not parameter.required
+    found: dict[str, float | str] = {}
+    for group, rows in results.rows.groupby("group", observed=True):
+        values: list[Any] = list(rows[raw]) if raw in rows else []
+        given = raw in design.settings or raw in design.groups[str(group)].parameters
+        if not given and all(map(missing, values)):
+            values = [parameter.default] if parameter is not None and known else []
+        elif column is not None and column.type == "boolean":
+            values = [bool(value) for value in values]
+        plain = {_plain_level(value, levels) for value in values}
+        if len(plain) == 1:
+            found[str(group)] = plain.pop()
+    return found
+
+
+def _plain_level(value: Any, levels: Sequence[Any]) -> float | str:
+    """Returns a value as the levels of a factor are: as a number if they are, and it is one, else as a text; see `plain_levels`."""
+    (level,) = plain_levels([value]) if not isinstance(levels[0], str) else [plain_text(value)]
+    return level
 
 
 def same_unit(one: Results, other: Results, measure: str) -> bool:
     """Returns whether a measure has the same unit in two experiments, as far as both have one."""
     units = {one.unit(measure), other.unit(measure)} - {""}
     return len(units) <= 1
-
-
-def _is_fixed(results: Results, name: str) -> bool:
-    """Returns whether a column is a factor, or has one value in each group: it is not drawn for each participant or trial."""
-    rows = results.rows
-    return name in results.all_factors or (name in rows and bool((rows.groupby("group")[name].nunique() <= 1).all()))
 
 
 def matched(results: Results, beside: Beside, measure: str) -> Any:
@@ -200,7 +255,7 @@ def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
             rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
-            left_out = len(beside.of(measure)) - len(cells)
+            left_out = len(beside.of(measure)) - len(cells) + beside.left_out.get(measure, 0)
             row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells), "left_out": left_out}
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
     return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])

@@ -13,7 +13,7 @@ import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
 from actr3d.experiment.report.analyses import find_analyses
-from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing, same_unit
+from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing, ran_at, same_unit, varied_once
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -166,23 +166,41 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, be
 def comparison_section(results: Results, other: Results, parts: Sequence[Results], beside: Beside | None) -> Section:
     """Returns the section that compares two experiments."""
     title = f"Compared with {other.label}"
-    if beside is None:
+    if not any(name in other.measures and same_unit(results, other, name) for name in results.measures):
         return Section(title=title, parts=[Caution(f"{other.label} has no measure in common with {results.label}.")])
     different = [*other.specification.differences(results.specification), *other.design.differences(results.design)]
     what = f"{other.label} (“there”: {other.specification.name}, {len(other.rows):,} trials)"
     text = f"{what} differs from this experiment (“now”) in: {'; '.join(different) or 'nothing that was set'}."
-    fit = fit_to(parts, beside)
-    found: list[str | Table | Plot | Caution] = [text]
-    if varied := [name for name in other.factors if name not in results.all_factors and name not in results.rows]:
-        found.append(Caution(f"Means of {other.label} are over all levels of {', '.join(varied)}, which this experiment does not vary."))
+    found: list[str | Table | Plot | Caution] = [text, *levels_compared(results, other)]
     if units := [name for name in results.measures if name in other.measures and not same_unit(results, other, name)]:
         found.append(Caution(f"Not compared, because {other.label} has them in another unit: {', '.join(units)}."))
-    if len(fit):
+    if beside is not None and len(fit := fit_to(parts, beside)):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
         found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
     else:
         found.append(Caution("The two experiments have no cell in common without failed trials: their means are not compared."))
     return Section(title=title, parts=found)
+
+
+def levels_compared(results: Results, other: Results) -> list[str | Caution]:
+    """Returns sentences about the factors that only one of two experiments varies: at which levels the two are compared."""
+    found: list[str | Caution] = []
+    for name, (varying, levels) in varied_once(results, other).items():
+        which, fixed = ("this experiment", other) if varying is results else (other.label, results)
+        of_groups, what = ran_at(fixed, name, levels), name.replace("_", " ").strip()
+        elsewhere = other.label if fixed is other else "this experiment"
+        ran = ", ".join(f"{plain_text(level)}{_unit(varying, name)}" for level in dict.fromkeys(of_groups.values()))
+        if not of_groups:
+            drawn = not {name, name.removesuffix("_")}.isdisjoint(fixed.rows)
+            why = "drew it for each participant or trial" if drawn else "has no such parameter with a known default"
+            found.append(Caution(f"Only {which} varies {what}, and {elsewhere} {why}. The means are not compared."))
+        elif set(levels).isdisjoint(of_groups.values()):
+            found.append(Caution(f"Only {which} varies {what}, and {elsewhere} ran at another level, {ran}. The means are not compared."))
+        else:
+            found.append(f"Only {which} varies {what}. The means are compared at the level at which {elsewhere} ran: {ran}.")
+            if left := [group for group in fixed.groups if group not in of_groups]:
+                found.append(Caution(f"Groups of {elsewhere} without one level of {what} are not compared: {', '.join(left)}."))
+    return found
 
 
 def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: str) -> Table:
