@@ -170,7 +170,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     file = workbench.folder / ".workbench" / "recordings" / f"{name}.sqlite"
     file.rename(file.with_suffix(".away"))
     drag("End")
-    expect(asked).to_contain_text("because the recording that this run repeats has been deleted or renamed: what lies ahead, from 1 s")
+    expect(asked).to_contain_text("would be lost: the recording that this run repeats has been deleted or renamed.")
     asked.get_by_role("button", name="Cancel").click()
     expect(asked).to_have_count(0)
     file.with_suffix(".away").rename(file)
