@@ -189,7 +189,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     order("until", 2)
     order("seek", 1.5)
     drag("Home")
-    expect(asked).to_contain_text("Nothing was changed, because the run is not recorded: what lies ahead, from 1.5 s to 2 s,")
+    expect(asked).to_contain_text("What lies ahead, from 1.5 s to 2 s, would be lost: the run is not recorded.")
     asked.get_by_role("button", name="Cancel").click()
     expect(asked).to_have_count(0)
     expect(page.locator("#width")).to_have_text(width)
