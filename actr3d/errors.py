@@ -74,6 +74,9 @@ class SimulationError(Actr3dError):
 class RecordingError(Actr3dError):
     """A recording cannot be written or read."""
 
+    reason = ""
+    """Why a file cannot be written, in a few words."""
+
 
 class NotebookError(Actr3dError):
     """Something cannot be shown in a notebook."""

@@ -20,7 +20,22 @@ from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.recordings import Recordings
 from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, is_there, start_of
-from workbench.worker.messages import ENDED, At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
+from workbench.worker.messages import (
+    ENDED,
+    At,
+    Branched,
+    Cut,
+    Draw,
+    Facts,
+    FromWorker,
+    Loaded,
+    News,
+    Notice,
+    Reply,
+    Start,
+    State,
+    Unrecorded,
+)
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
 
@@ -217,6 +232,10 @@ class Session(Broadcast, Receiver):
             case Branched() if shown:
                 self.branched = message
                 self.changed(facts=True)
+            case Unrecorded():
+                launched.start = msgspec.structs.replace(launched.start, record=None)
+                self._lists_changed()
+                self.changed(facts=True)
             case Loaded():
                 launched.add_helper(message)
                 self.changed(facts=shown)
@@ -289,6 +308,8 @@ class Session(Broadcast, Receiver):
         if launched is self._loading:
             self._loading = None
         else:
+            if self.state is None:
+                self.state_version += 1  # pages still show the state of the previous run, which is gone
             if self.state is not None and self.state.status not in ENDED:
                 status_now = "failed" if self._ending != "stopped" else "ended"
                 reason = self._ending or self._after_end

@@ -102,6 +102,21 @@ class Recording:
     def detach(self) -> None:
         """Records nothing from now on: this is a forked copy of the process, and the run is recorded in the other."""
         _OF_OTHERS.append(self._writer)
+        self._drop()
+
+    @property
+    def failure(self) -> RecordingError | None:
+        """Why the file can no longer be written; None if it can."""
+        return self._writer.failure
+
+    def stop(self) -> None:
+        """Records nothing from now on, while the run goes on; the file keeps what was written."""
+        writer = self._writer
+        self._drop()
+        with suppress(RecordingError):
+            writer.close()
+
+    def _drop(self) -> None:
         self.ending = None
         self._writer = NoWriter()
         self._append = self._writer.events.append
@@ -163,12 +178,11 @@ class Recording:
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
         """Removes everything after a tick of the only run, and all but the first events, answers and commands: the run goes back.
 
-        Raises:
-            RecordingError: If the file can no longer be written.
+        If the file can no longer be written, nothing is removed, and the next item raises the error: the change that sent the run
+        another way is made by then.
         """
         self.states, self.events, self.answers, self.commands = ticks + 1, events, answers, commands
         self._writer.cut(ticks, events, answers, commands)
-        self.check()
 
     def copy_to(self, path: Path | str, **facts: Any) -> None:
         """Writes everything recorded until now to a new file: a closed recording of a run that was left at this point.

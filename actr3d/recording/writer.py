@@ -71,7 +71,7 @@ class Answer(NamedTuple):
 
 
 class NoWriter:
-    """Takes the place of a `Writer` in a forked copy of the process: it drops everything."""
+    """Takes the place of a `Writer` where nothing is recorded, such as in a forked copy of the process: it drops everything."""
 
     failure = None
 
@@ -166,7 +166,7 @@ class Writer:
                 part.rename(path)
             except (sqlite3.Error, OSError, ValueError, MemoryError) as error:
                 _remove(part)
-                raise RecordingError(f"cannot write the recording '{path}': {_reason(error)}") from None
+                raise _unwritable(path, _reason(error)) from None
 
     def close(self) -> None:
         """Writes the remaining items and closes the file, which is then a single file without companions.
@@ -200,7 +200,7 @@ class Writer:
                 # Items may be lost, whatever was raised: nothing may be written after a gap.
                 reason = _reason(error)
                 advice = "; make room on the disk, then run it again" if reason == FULL else ""
-                self.failure = RecordingError(f"cannot write the recording '{self.path}': {reason}{self._kept_text()}{advice}")
+                self.failure = _unwritable(self.path, reason, f"{self._kept_text()}{advice}")
                 if not isinstance(error, Exception):
                     raise
 
@@ -355,6 +355,12 @@ def _remove(path: Path) -> None:
     for suffix in ("", *COMPANIONS):
         with suppress(OSError, ValueError):
             path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
+
+
+def _unwritable(path: Path, reason: str, more: str = "") -> RecordingError:
+    error = RecordingError(f"cannot write the recording '{path}': {reason}{more}")
+    error.reason = reason
+    return error
 
 
 def _reason(error: BaseException) -> str:

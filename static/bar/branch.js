@@ -48,19 +48,20 @@ function Notice({ which, title, children }) {
 
 /** Shows in the status line what was kept when the run was changed in its past. */
 export function Branch() {
-  const { id, born, branched, model } = session.value ?? {};
+  const { id, born, branched, model, recording: own } = session.value ?? {};
   if (!branched) return null;
   const { recording, opened, at, until, made, kept } = branched;
   const which = `${id} ${born} ${recording}`;
   if (!kept || closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
   if (embedded !== null) {
-    const title = `From ${runTimeText(at)} on, this differs from the recording, or goes beyond it.`;
-    return html`<${Notice} key=${which} which=${which} title=${title}>A branch, which ends with the kernel; run the cell again to see the recording<//>`;
+    const text = "A branch, which ends with the kernel; run the cell again to see the recording";
+    const title = `${text}. From ${runTimeText(at)} on, this differs from the recording, or goes beyond it.`; // a narrow page cuts the text
+    return html`<${Notice} key=${which} which=${which} title=${title}>${text}<//>`;
   }
   const open = () => openRun({ id: recording, model, made });
   if (opened) {
-    const title = `From ${runTimeText(at)} on it differs from ${where}, or goes beyond it; this is recorded as a branch.`;
+    const title = `From ${runTimeText(at)} on it differs from ${where}, or goes beyond it; this is ${own === null ? "not recorded" : "recorded as a branch"}.`;
     return html`<${Notice} key=${which} which=${which} title=${title}>
       <button class="link" onClick=${open}>The recording</button> keeps the run up to ${runTimeText(until)}
     <//>`;

@@ -66,11 +66,13 @@ function Row({ run, list, number, now, toggle, open }) {
   const name = ownName(run);
   const { tags = [] } = run.label ?? {};
   const row = useRef(null);
-  // A row that goes, such as one that is deleted, passes the focus on.
+  // A row that leaves the list, such as one that is deleted, passes the focus on; a row that has it is drawn wherever the list is scrolled to.
   useLayoutEffect(
     () => () => {
-      const { previousElementSibling: before, nextElementSibling: after } = row.current;
-      if (row.current.contains(document.activeElement)) (after.querySelector("input") ?? before.querySelector("input"))?.focus({ preventScroll: true });
+      if (!row.current.contains(document.activeElement)) return;
+      const rows = [...row.current.parentElement.querySelectorAll("[data-run]")];
+      const at = rows.indexOf(row.current);
+      (rows[at + 1] ?? rows[at - 1])?.querySelector("input").focus({ preventScroll: true });
     },
     [],
   );
@@ -110,9 +112,11 @@ export function Table({ list, open }) {
   const seen = useSignal({ top: 0, height: 600 });
   const now = useSignal(Date.now() / 1000);
   const last = useRef(null);
+  const focused = useSignal(null); // the id of the run whose row had the focus last
 
   useLayoutEffect(() => {
     const place = box.current;
+    place.addEventListener("focusin", ({ target }) => (focused.value = target.closest("[data-run]")?.dataset.run ?? null));
     const look = () => (seen.value = { top: place.scrollTop, height: place.clientHeight });
     look();
     const watch = new ResizeObserver(look);
@@ -127,6 +131,12 @@ export function Table({ list, open }) {
 
   const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.value.top / ROW) - AROUND));
   const beyond = Math.min(list.length, first + Math.ceil(seen.value.height / ROW) + 2 * AROUND);
+  const drawn = list.slice(first, beyond).map((_, n) => first + n);
+  const kept = list.findIndex((run) => run.id === focused.value);
+  if (kept >= 0 && kept < first) drawn.unshift(kept);
+  if (kept >= beyond) drawn.push(kept);
+  // The key of a space is that of the row after it: no row is moved in the page when others come or go, which would take its focus away.
+  const space = (rows, key) => html`<tr class="space" key="before ${key}" aria-hidden="true" style=${{ height: `${rows * ROW}px` }}></tr>`;
 
   /** Chooses a single row; with Ctrl, or its checkbox, in addition to others; with Shift, a range. */
   function toggle(id, event, besides = event.ctrlKey || event.metaKey) {
@@ -154,9 +164,13 @@ export function Table({ list, open }) {
         </tr>
       </thead>
       <tbody>
-        <tr class="space" aria-hidden="true" style=${{ height: `${first * ROW}px` }}></tr>
-        ${list.slice(first, beyond).map((run, n) => html`<${Row} key=${run.id} run=${run} list=${list} number=${first + n} now=${now.value} toggle=${toggle} open=${open} />`)}
-        <tr class="space" aria-hidden="true" style=${{ height: `${(list.length - beyond) * ROW}px` }}></tr>
+        ${drawn.map((number, n) => {
+          const run = list[number];
+          const left = number - (drawn[n - 1] ?? -1) - 1;
+          const shown = html`<${Row} key=${run.id} run=${run} list=${list} number=${number} now=${now.value} toggle=${toggle} open=${open} />`;
+          return left > 0 ? [space(left, run.id), shown] : [shown];
+        }).flat()}
+        ${space(list.length - 1 - (drawn.at(-1) ?? -1), "the end")}
       </tbody>
     </table>
   </div>`;

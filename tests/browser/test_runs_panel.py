@@ -183,21 +183,62 @@ def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, 
     page.get_by_label("Search recordings").fill("counting.py ended")
     rows = page.locator("tr[data-run]")
     expect(rows).to_have_count(3)
-    order = [rows.nth(n).get_attribute("data-run") for n in range(3)]
-    assert sorted(names) == sorted(str(name) for name in order)
+    order = [str(rows.nth(n).get_attribute("data-run")) for n in range(3)]
+    assert sorted(names) == sorted(order)
     for gone, focused in (order[1], order[2]), (order[2], order[0]):
         page.keyboard.press("Shift")  # from now on by keys
-        row(page, str(gone)).locator("input").focus()
+        row(page, gone).locator("input").focus()
         page.keyboard.press("Space")
         expect(page.get_by_role("button", name="Delete", exact=True)).to_be_visible()
         page.keyboard.press("Delete")
         expect(page.get_by_role("dialog").get_by_role("button", name="Cancel")).to_be_focused()
         page.keyboard.press("Tab")
         page.keyboard.press("Enter")
-        expect(row(page, str(gone))).to_have_count(0)
-        expect(row(page, str(focused)).locator("input")).to_be_focused()
+        expect(row(page, gone)).to_have_count(0)
+        expect(row(page, focused).locator("input")).to_be_focused()
+    page.locator(".toast").get_by_role("button", name="Restore").focus()
+    page.keyboard.press("Enter")
+    expect(row(page, order[2])).to_be_visible()
+    expect(row(page, order[0]).locator("input")).to_be_focused()  # where the focus was before
+    row(page, order[2]).locator("input").focus()
+    page.keyboard.press("Space")
+    page.keyboard.press("Delete")
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     page.get_by_role("button", name="Read the list again").click()
     expect(rows).to_have_count(1)
+
+
+def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, workbench: Served, recordings: Path) -> None:
+    name = recorded(workbench, "counting.py")
+    copies = [recordings / f"long-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(60)]
+    for copy in copies:
+        shutil.copy(recordings / f"{name}.sqlite", copy)
+    open_tab(page, "Runs")
+    page.get_by_label("Search recordings").fill("long")
+    order = [copy.stem for copy in reversed(copies)]
+    box = row(page, order[5]).locator("input")
+    place = page.locator(".runs-list")
+    page.keyboard.press("Shift")  # from now on by keys
+    box.focus()
+    for share in (0.2, 0.4, 0.6, 0.8, 1.0, 0.5, 0.0, 1.0):
+        top = place.evaluate("(list, share) => (list.scrollTop = share * (list.scrollHeight - list.clientHeight))", share)
+        expect(row(page, order[round(share * 59)])).to_be_visible()
+        expect(box).to_be_focused()
+        assert place.evaluate("list => list.scrollTop") == pytest.approx(top, abs=1)
+        assert place.evaluate("list => list.scrollHeight") < 62 * 44
+    page.keyboard.press("Space")
+    expect(page.locator("tr.chosen")).to_have_attribute("data-run", order[5])
+    place.evaluate("list => (list.scrollTop = list.scrollHeight)")
+    expect(row(page, order[59])).to_be_visible()
+    page.keyboard.press("Delete")
+    expect(page.get_by_role("dialog")).to_contain_text("Delete the recording")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(row(page, order[5])).to_have_count(0)
+    expect(page.locator("tr[data-run] input:focus")).to_have_count(1)  # of a row that is drawn
+    page.get_by_label("Search recordings").focus()
+    for copy in copies:
+        copy.unlink(missing_ok=True)
 
 
 @pytest.mark.slow

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import resource
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from actr3d.recording import Recorded
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_curves import PUSHED
+from tests.server.test_run_changes import MODELS, reopened
 from workbench import retention
 from workbench.protocol import COMMAND
 from workbench.recording_index import summary_json
@@ -108,7 +112,7 @@ def test_what_is_not_recorded_is_lost_only_where_that_is_allowed(desk: Desk, tmp
     talk = desk.begin(tmp_path, PUSHED)
     there(talk, 40)
     talk.say("seek", time=0.1)
-    with pytest.raises(RefusedError, match=r"is not recorded: what lies ahead, from 0.1 s to 0.4 s, would be lost"):
+    with pytest.raises(RefusedError, match=r"what lies ahead, from 0.1 s to 0.4 s, would be lost: the run is not recorded"):
         talk.say("command", word="aperture", values=[0.3])
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
     talk.say("command", word="aperture", values=[0.3], drop=True)
@@ -123,7 +127,7 @@ def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
     talk.say("seek", time=0.1)
     where = folder(talk)
     aside = where.rename(where.with_name("aside"))  # no file can be made there
-    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 s to 0.4 s, cannot be kept"):
+    with pytest.raises(RefusedError, match=r"what lies ahead, from 0.1 s to 0.4 s, would be lost: it cannot be kept \(unable to open"):
         talk.say("command", word="aperture", values=[0.3])
     aside.rename(where)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
@@ -131,24 +135,124 @@ def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
     assert len(found(talk)) == 1
 
 
+@contextmanager
+def full_disk(talk: Talk) -> Generator[None]:
+    """Lets no file of a session's worker grow, as on a full disk."""
+    worker = talk.session._worker
+    assert worker is not None
+    limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))
+    try:
+        yield
+    finally:
+        resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, limits)
+
+
 def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_still_be_seen(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED, record=True)
     there(talk, 40)
     talk.say("seek", time=0.1)
-    worker = talk.session._worker
-    assert worker is not None
-    limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
-    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow, as on a full disk
-    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 s to 0.4 s, cannot be kept"):
-        talk.say("command", word="aperture", values=[0.3])
-    change = COMMAND.validate_python({"type": "command", "word": "aperture", "values": [0.3]})
-    assert desk.do(change.submit(talk.session, "test")).loses
-    talk.say("until", time=0.4)
-    assert talk.until("paused", time=0.4)["furthest"] == 0.4
-    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, limits)
+    with full_disk(talk):
+        with pytest.raises(RefusedError, match=r"what lies ahead, from 0.1 s to 0.4 s, would be lost: it cannot be kept"):
+            talk.say("command", word="aperture", values=[0.3])
+        change = COMMAND.validate_python({"type": "command", "word": "aperture", "values": [0.3]})
+        assert desk.do(change.submit(talk.session, "test")).loses
+        talk.say("until", time=0.4)
+        assert talk.until("paused", time=0.4)["furthest"] == 0.4
     talk.say("seek", time=0.1)
     talk.say("command", word="aperture", values=[0.3])
     assert len(found(talk)) == 1
+
+
+ASKED = r"what lies ahead, from 0\.1 s to [0-9.]+ s, would be lost(, and what follows would not be recorded|: it cannot be kept)"
+
+
+@pytest.mark.parametrize("undone", [False, True])
+@pytest.mark.parametrize("failed", [True, False])
+@pytest.mark.parametrize("kind", MODELS)
+def test_a_run_that_is_changed_on_a_full_disk_goes_on_unrecorded(kind: str, failed: bool, undone: bool, desk: Desk, tmp_path: Path) -> None:
+    source, agent, below = MODELS[kind]
+
+    def changed(talk: Talk, **more: Any) -> None:
+        if undone:
+            talk.say("undo", **more)
+        else:
+            talk.say("command", word="forbid_once", named={"system": agent, "production": "up"}, **more)
+
+    def behind(talk: Talk) -> list[Any]:
+        talk.until("paused", time=0.1, furthest=0.1)
+        reached: list[Any] = []
+        for time in (0.7, 0.05, 0.3, 0.1, 0.7, 1.5):
+            talk.say("until" if time > talk.state["time"] else "seek", time=time)
+            talk.until("paused", time=time)
+            reached.append([time, talk.state["parts"], talk.say("events", most=20_000)["events"]])
+        return reached
+
+    def begun(name: str) -> Talk:
+        talk = desk.begin(tmp_path, source, record=True, name=name)
+        talk.say("until", time=0.1)
+        talk.until("paused", time=0.1)
+        if undone:
+            talk.say("command", word="set_buffer", named={"buffer": f"{below}goal", "chunk": "count 5"})
+        return talk
+
+    control = begun("control.py")
+    control.say("until", time=1.2)
+    control.until("paused", time=1.2)
+    control.say("seek", time=0.1)
+    control.until("paused", time=0.1)
+    changed(control)
+    talk = begun("model.py")
+    talk.say("until", time=1.0)
+    talk.until("paused", time=1.0)
+    with full_disk(talk):
+        if failed:
+            talk.say("run")
+            talk.until("failed")
+        talk.say("seek", time=0.1)
+        talk.until("paused", time=0.1)
+        with pytest.raises(RefusedError, match=ASKED):
+            changed(talk)
+        assert talk.state["furthest"] >= 1.0
+        recorded = talk.facts["recording"]
+        changed(talk, drop=True)
+        done = "undone" if undone else "changed"
+        talk.wait(lambda: talk.state["reason"] == f"{done} at 0.10 s; the rest was lost; what follows is not recorded")
+        assert talk.facts["recording"] is None
+        assert "cannot write the recording" in "".join(one["text"] for one in talk.notices)
+        assert behind(talk) == behind(control)
+    talk.say("seek", time=0.3)
+    talk.until("paused", time=0.3)
+    clear = {"word": "clear_buffer", "named": {"buffer": f"{below}goal"}}
+    with pytest.raises(RefusedError, match=r"what lies ahead, from 0\.3 s to 1\.5 s, would be lost: the run is not recorded"):
+        talk.say("command", **clear)
+    talk.say("command", **clear, drop=True)
+    assert talk.state["reason"] == "changed at 0.30 s; the rest was lost"
+    desk.do(talk.session.stop())
+    assert talk.facts["ending"] == "stopped"
+    with Recorded(folder(control) / f"{recorded}.sqlite") as kept:
+        kept.check()
+        assert kept.event_count > 0, "what was recorded stays"
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, _, below = MODELS[kind]
+    path, talk = reopened(desk, tmp_path, source)
+    clear = {"word": "clear_buffer", "named": {"buffer": f"{below}goal"}}
+    with full_disk(talk):
+        talk.say("until", time=0.2)
+        talk.wait(lambda: talk.state["status"] in ("paused", "failed") and talk.state["time"] > 0)
+        talk.say("seek", time=0.1)
+        talk.until("paused", time=0.1)
+        with pytest.raises(RefusedError, match=r"^what follows would not be recorded: "):
+            talk.say("command", **clear)
+        talk.say("command", **clear, drop=True)
+        assert talk.state["reason"] == "changed at 0.10 s; what follows is not recorded"
+        talk.say("until", time=0.5)
+        talk.until("paused", time=0.5)
+    facts = talk.facts
+    assert (facts["recorded"], facts["recording"], facts["branched"]["recording"]) == (path.stem, None, path.stem)
 
 
 def test_branches_of_one_run_are_not_without_number(tmp_path: Path) -> None:

@@ -101,6 +101,21 @@ def test_a_run_that_cannot_begin_on_a_full_disk_ends_with_the_reason(desk: Desk,
     assert talk.facts["kind"] == "program"
 
 
+def test_a_run_that_cannot_begin_on_a_full_disk_leaves_nothing_of_the_run_before(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, FLOOD.replace("200", "0.2"))
+    ended(talk)
+    feed = talk.session.join("page")
+    assert json.loads(desk.do(feed.next()))["state"]["events"] > 0
+    with nearly_full_disk(desk, 1):
+        desk.do(talk.session.restart(None, None))
+        begun = talk.session._newest
+        assert begun is not None
+        desk.do(begun.over.wait())
+    shown = json.loads(desk.do(feed.next()))
+    assert "cannot write the recording" in shown["session"]["ending"]
+    assert shown["state"] is None
+
+
 @pytest.mark.slow
 def test_what_is_taken_of_a_run_that_has_ended_is_replayed_while_its_session_is_open(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, HELPED.replace("from helper import WORD", 'WORD = "go"'), record=True)

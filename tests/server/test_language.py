@@ -456,6 +456,58 @@ def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
     assert (count, again.replace("|", "")) == (changed, text.replace("|", ""))
 
 
+TOTAL = """from actr3d.actr import *
+
+class Stroop(ACTR):
+    goal = Buffer()
+    def init():
+        self.total = 0
+    def look(goal="task"):
+        self.total += 1
+        print(self.total)
+
+class Child(Stroop):
+    def look(goal="task"):
+        self.total += 2
+
+class Other(ACTR):
+    def init():
+        self.total = 0
+
+model = Stroop()
+print(model.total, [Child()][0].total, Other().total)
+"""
+BESIDE = """from actr3d.actr import *
+
+class Base(ACTR):
+    goal = Buffer()
+    def look(goal="x"): pass
+
+class Child(Base):
+    aim = Buffer()
+    def say(goal="y"): pass
+"""
+DOTTED = "import actr3d.actr as aa\n\nclass Walk(aa.ACTR):\n    goal = aa.Buffer()\n    def look(goal='x'): pass\n"
+
+
+@pytest.mark.parametrize(
+    "place", ["self.to|tal = 0\n    def look", "self.to|tal += 1", "self.to|tal += 2", "model.to|tal", "(self.to|tal)", "[0].to|tal"]
+)
+def test_an_attribute_that_a_method_sets_is_renamed_wherever_its_class_has_it(ask: Asked, place: str) -> None:
+    text = TOTAL.replace(place.replace("|", ""), place)
+    assert text != TOTAL
+    after, count = renamed(ask, text, "amount")
+    kept = TOTAL.replace("total", "amount").replace(
+        "    def init():\n        self.amount = 0\n\nmodel", "    def init():\n        self.total = 0\n\nmodel"
+    )
+    assert (after.replace("|", ""), count) == (kept.replace("Other().amount", "Other().total"), 6)
+
+
+def test_a_method_is_renamed_with_those_of_its_subclasses_that_replace_it(ask: Asked) -> None:
+    after, count = renamed(ask, TOTAL.replace("def look", "def lo|ok", 1), "see")
+    assert (count, after.count("def look"), after.replace("|", "").count("def see")) == (2, 0, 2)
+
+
 INHERITED = ("traced", "now", "stop", "explain")
 DERIVED = "class Derived(Base):\n    def lo|ok(self): pass\n"
 
@@ -490,6 +542,33 @@ DERIVED = "class Derived(Base):\n    def lo|ok(self): pass\n"
         *((NAMES.replace("goal.set", "go|al.set"), name, f"^'{name}' is a method of ACTR already$") for name in INHERITED),
         (NAMES.replace("def look", "def lo|ok"), "parent", "^'parent' is an attribute of .* already$"),
         (f"class Base:\n    def read(self): pass\n\n{DERIVED}", "read", "^'read' is a method of Base already$"),
+        *(
+            (TOTAL.replace("self.total +=", "self.to|tal +=", 1), name, f"^'{name}' is a")
+            for name in ("random", "parent", "traced", "explain")
+        ),
+        (TOTAL.replace("self.total +=", "self.to|tal +=", 1), "goal", "'goal' already has a meaning in line 4"),
+        (
+            f"{TOTAL}\ndef shown(one):\n    return one.total\n".replace("model.total", "model.to|tal"),
+            "amount",
+            "'total' in line 23 is the same",
+        ),
+        *((DOTTED.replace("def look", "def lo|ok"), name, f"^'{name}' is a method of aa.ACTR already$") for name in INHERITED),
+        *((DOTTED.replace("goal =", "go|al ="), name, f"^'{name}' is a method of aa.ACTR already$") for name in INHERITED),
+        (
+            DOTTED.replace("aa", "actr3d.actr")
+            .replace("import actr3d.actr as actr3d.actr", "import actr3d.actr")
+            .replace("def look", "def lo|ok"),
+            "traced",
+            "is a method of actr3d.actr.ACTR already",
+        ),
+        (BESIDE.replace("def look", "def lo|ok"), "say", "^'say' is a method of Child already$"),
+        (BESIDE.replace("goal = Buffer", "go|al = Buffer"), "aim", "'aim'"),
+        (
+            f"from actr3d.actr import *\n\n{BESIDE}".replace("goal = Buffer", "go|al = Buffer"),
+            "say",
+            "^'say' is a method of Child already$",
+        ),
+        (NAMES.replace("def look", "def lo|ok"), "_children", "^'_children' may be a private name of ACTR$"),
     ],
 )
 def test_what_cannot_be_renamed(ask: Asked, text: str, name: str, why: str) -> None:

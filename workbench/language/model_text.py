@@ -310,7 +310,10 @@ class ModelText:
         elif bracket is not None and bracket.kind == "def" and begins:
             self._add_parameter(bracket.names[0], token.text, has_default=keyword or self._text(number - 1)[:1] == "*")
         elif bracket is not None and bracket.kind == "class" and self._blocks and self._agent in self.agents:
-            self.agents[self._agent].bases.append(token.text)
+            bases, before = self.agents[self._agent].bases, self._before(number)
+            if before:
+                bases.pop()  # what stands before the dot
+            bases.append(".".join((*before, token.text)))
         elif bracket is not None and bracket.part is not None and not keyword:
             bracket.part.given.append(token.text)
         if bracket is not None and begins:

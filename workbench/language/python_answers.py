@@ -143,6 +143,13 @@ class PythonAnswers:
         owners = [owner for one in found if one.module_path == self._folder / path and (owner := one.parent()) and owner.type == "class"]
         return (owners[0].full_name or "").removeprefix(f"{owners[0].module_name}.") if owners else ""
 
+    def kinds(self, explicit: ExplicitText, path: str, at: int) -> set[str] | None:
+        """Returns the classes of the expression that ends at a position, those of other texts as empty; None if they are not known."""
+        found = self._script(explicit.text, path).infer(*explicit.place(at))
+        own = self._folder / path
+        kinds = {(one.full_name or "").removeprefix(f"{one.module_name}.") if one.module_path == own else "" for one in found}
+        return kinds or None
+
     def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
         """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
         code = f"{explicit.text}\n\n{owner}()."

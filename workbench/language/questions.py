@@ -14,6 +14,7 @@ from ruff import find_ruff_bin
 
 from workbench.language import actr_answers
 from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, LanguageError, Renaming
+from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import PythonAnswers
@@ -138,15 +139,17 @@ class Assistant:
         module = self._python.origin(original, path, new)
         if module:
             raise LanguageError(f"'{new}' is imported from {module} already")
-        owners = {self._python.owner(original, path, start) for start in found.starts} & model.agents.keys()
-        for base in [base for owner in owners for base in model.agents[owner].bases]:
-            kind = self._python.attribute(original, path, base, new)
-            if kind:
-                raise LanguageError(f"'{new}' is {kind} of {base} already")
+        members = ClassMembers(model, original, self._python, path)
+        name = None if found.what == "variable" else model.name_at(at)
+        part = None if name is None else actr_answers.part_of(model, name)
+        owner = part.agent if part is not None else members.owner(name) if name is not None else ""
+        taken = members.meaning(owner, found.name, new) if owner else ""
+        if taken:
+            raise LanguageError(taken)
         text, starts = _renamed(model.text, found, new)
         explicit = ExplicitText(ModelText(text))
         here = max((start for old, start in zip(found.starts, starts, strict=True) if old <= at), default=starts[0])
-        same = self._uses(explicit, path, here, text, new)
+        same = self._places(ModelText(text), explicit, path, here) if found.what == "name" else self._uses(explicit, path, here, text, new)
         for start in starts:
             if start not in same and found.what != "name":  # each production has its own part or variable
                 same |= self._uses(explicit, path, start, text, new)
@@ -155,6 +158,15 @@ class Assistant:
         if different:
             line = text.count("\n", 0, min(different)) + 1
             raise LanguageError(f"'{new}' already has a meaning in line {line}")
+
+    def _places(self, model: ModelText, explicit: ExplicitText, path: str, at: int) -> set[int]:
+        """Returns all places of the name at a position: those that Python knows, and for a member of a class those of the same member."""
+        name = model.name_at(at)
+        assert name is not None
+        members = ClassMembers(model, explicit, self._python, path)
+        owner = members.owner(name)
+        places = members.places(owner, name.text) if owner else set[int]()
+        return places.union(*(self._uses(explicit, path, start, model.text, name.text) for start in (at, *places)))
 
     def _uses(self, explicit: ExplicitText, path: str, at: int, text: str, name: str) -> set[int]:
         return {start for start in self._python.references(explicit, path, at) if text.startswith(name, start)}
@@ -181,7 +193,7 @@ class Assistant:
         defined = self._python.define(explicit, path, at)
         if defined is not None and defined.at is None:
             raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
-        starts = sorted(self._uses(explicit, path, at, model.text, name.text))
+        starts = sorted(self._places(model, explicit, path, at))
         if not starts:
             raise LanguageError(f"'{name.text}' cannot be renamed: where it is defined is not known")
         return Renaming(name=name.text, what="name", starts=starts)

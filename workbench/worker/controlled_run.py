@@ -8,7 +8,7 @@ from typing import Any
 
 from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.clock import microseconds, seconds
-from actr3d.errors import SimulationError
+from actr3d.errors import RecordingError, SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
@@ -247,6 +247,15 @@ class ControlledRun(ABC):
         for name, value in facts.items():
             if self._recording is not None:
                 self._recording.fact(name, value)
+
+    def give_up_recording(self) -> RecordingError | None:
+        """Stops recording if the file can no longer be written; the run goes on without it. Returns why it cannot be written."""
+        recording = self._recording
+        if recording is None or recording.failure is None:
+            return None
+        failure, self._recording = recording.failure, None
+        recording.stop()
+        return failure
 
     def _close_recording(self, *, left: bool) -> None:
         """Closes the recording; `left` says that the user leaves the run, which may not be over."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from actr3d.clock import seconds
-from actr3d.errors import Actr3dError
+from actr3d.errors import RecordingError
 from actr3d.recording import Recording
 from actr3d.runner.facts import NAMED
 from workbench.retention import new_branch, superfluous_branches
 from workbench.time_text import time_text
 from workbench.worker.controlled_run import LossError
-from workbench.worker.messages import Branched
+from workbench.worker.error_report import notice_of
+from workbench.worker.messages import Branched, Unrecorded
 from workbench.worker.run_controller import RunController
 
 
@@ -26,7 +27,7 @@ class KeptBranch:
         drop: Whether what lies ahead may be lost if it cannot be kept.
 
     Raises:
-        LossError: If it cannot be kept, and may not be lost.
+        LossError: If it cannot be kept, and may not be lost; or if the recording can no longer be written.
     """
 
     def __init__(self, controller: RunController, recording: Recording | None, clock: int, furthest: int, *, drop: bool) -> None:
@@ -34,6 +35,7 @@ class KeptBranch:
         self._start = start = controller.channel.start
         self._at, self._until = seconds(clock), seconds(furthest)
         self._ahead = furthest > clock
+        self._drop = drop
         self._branch: Path | None = None
         self._ancestors = controller.run.ancestors
         self._left_later = bool(self._ancestors) and self._ancestors[0][1] > self._at
@@ -41,27 +43,30 @@ class KeptBranch:
         # A run that repeats a recording is kept by that recording.
         self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
         self._is_gone = self._repeated is not None and not self._repeated.is_file()
-        if self._ahead and (self._repeated is None or self._is_gone):
-            self._branch = self._copy(recording, drop=drop)
+        lost = self._copy(recording) if self._ahead and (self._repeated is None or self._is_gone) else ""
+        failure = None if recording is None or not self._ahead else recording.failure
+        if not drop and (lost or failure is not None):
+            ahead = f"what lies ahead, from {time_text(self._at)} to {time_text(self._until)}, would be lost"
+            later = "what follows would not be recorded"
+            text = later if not lost else ahead if failure is None else f"{ahead}, and {later}"
+            raise LossError(f"{text}: {lost if failure is None else failure.reason}")
 
-    def _copy(self, recording: Recording | None, *, drop: bool) -> Path | None:
-        ahead = f"what lies ahead, from {time_text(self._at)} to {time_text(self._until)},"
-        if self._is_gone or recording is None or self._start.record is None:
-            if drop:
-                return None
-            why = "the recording that this run repeats has been deleted or renamed" if self._is_gone else "the run is not recorded"
-            raise LossError(f"nothing was changed, because {why}: {ahead} would be lost")
+    def _copy(self, recording: Recording | None) -> str:
+        """Keeps what lies ahead; returns why it cannot be kept, or nothing."""
+        if self._is_gone:
+            return "the recording that this run repeats has been deleted or renamed"
+        if recording is None or self._start.record is None:
+            return "the run is not recorded"
         path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:
             # The copy is of the run as it was. If the run branched from another recording after the present moment, the copy has that
             # branch point, and keeps the run's own facts.
             tie = {} if self._left_later else {"branched": self._at, "origin": origin, "ancestors": self._ancestors}
             recording.copy_to(path, **{NAMED: path.stem, **tie})
-        except Actr3dError as error:
-            if drop:
-                return None
-            raise LossError(f"nothing was changed, because {ahead} cannot be kept: {error}") from None
-        return path
+        except RecordingError as error:
+            return f"it cannot be kept ({error.reason or error})"
+        self._branch = path
+        return ""
 
     def undo(self) -> None:
         """Removes the copy, because nothing was changed."""
@@ -92,5 +97,11 @@ class KeptBranch:
             self._controller.run.flush()  # pages list recordings again when they hear of the branch
             self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
         is_kept = self._branch is not None or (self._repeated is not None and not self._is_gone)  # pages say so in a notice
-        lost = "" if is_kept else "; the rest was lost"
-        self._controller.goes_another_way(events, f"{what} at {time_text(self._at, 2)}{lost if self._ahead else ''}", ahead=self._ahead)
+        done = [f"{what} at {time_text(self._at, 2)}"]
+        if self._ahead and not is_kept:
+            done.append("the rest was lost")
+        if self._ahead and self._drop and (failure := self._controller.run.give_up_recording()) is not None:
+            self._controller.channel.post(notice_of(failure))
+            self._controller.channel.post(Unrecorded())
+            done.append("what follows is not recorded")
+        self._controller.goes_another_way(events, "; ".join(done), ahead=self._ahead)

@@ -177,6 +177,10 @@ class Branched(Message, frozen=True, kw_only=True):
     """The furthest time that the run had reached [s]."""
 
 
+class Unrecorded(Message, frozen=True, kw_only=True):
+    """The run goes on without being recorded."""
+
+
 class Loaded(Message, frozen=True, kw_only=True):
     """The model has loaded a helper module."""
 
@@ -243,7 +247,7 @@ class Over(Message, frozen=True, kw_only=True):
 
 
 ToWorker = Start | Do | Draw | Leave | Where
-FromWorker = Facts | State | News | Cut | Branched | Loaded | Share | Notice | Reply | At | Over
+FromWorker = Facts | State | News | Cut | Branched | Unrecorded | Loaded | Share | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)

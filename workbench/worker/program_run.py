@@ -120,7 +120,7 @@ class _PassRecorder:
     def event(self, event: TraceEvent) -> None:
         new = self._is_new("event", self._recording.events)
         if self._held is not None:
-            self._held.append(lambda: self._recording.event_alone(event))
+            self._held.append(lambda: self._recording.event(event))  # whatever becomes of the recording, the change is made
         elif new:
             self._recording.event_alone(event)
 
