@@ -217,7 +217,8 @@ class _Conditions:
         self.failed: set[tuple[Level, ...]] = set()
         """The levels of the columns of the conditions in which a trial failed."""
         self._names = names
-        self._trials: dict[tuple[Any, Any], dict[Combination, int]] = defaultdict(dict)
+        self.trials: dict[tuple[Any, Any], dict[Combination, int]] = defaultdict(dict)
+        """The numbers of trials with a value: by place and condition, those of each combination."""
 
     def add(self, combination: Combination, place: tuple[Level, ...], condition: tuple[Level, ...], trials: int, failures: int) -> None:
         """Adds a combination with its numbers of trials that have a value, and that failed."""
@@ -226,30 +227,30 @@ class _Conditions:
         if failures:
             self.failed.add(condition[: self._names])
         if trials:
-            self._trials[place, condition][combination] = trials
+            self.trials[place, condition][combination] = trials
 
     def leave_out(self, failed: Collection[tuple[Level, ...]]) -> int:
         """Leaves conditions out, and returns the number of their trials."""
-        found = [key for key in self._trials if key[1][: self._names] in failed]
-        return sum(sum(self._trials.pop(key).values()) for key in found)
+        found = [key for key in self.trials if key[1][: self._names] in failed]
+        return sum(sum(self.trials.pop(key).values()) for key in found)
 
     def beside(self, other: _Conditions) -> set[Combination]:
         """Returns the combinations that are averaged beside another experiment: both have their conditions, also at each place of both."""
-        conditions = {condition for _, condition in self._trials} & {condition for _, condition in other._trials}
-        here, there = ({place for place, condition in one._trials if condition in conditions} for one in (self, other))
+        conditions = {condition for _, condition in self.trials} & {condition for _, condition in other.trials}
+        here, there = ({place for place, condition in one.trials if condition in conditions} for one in (self, other))
         both = here & there
         return {
             combination
-            for (place, condition), combinations in self._trials.items()
-            if condition in conditions and (place not in both or (place, condition) in other._trials)
+            for (place, condition), combinations in self.trials.items()
+            if condition in conditions and (place not in both or (place, condition) in other.trials)
             for combination in combinations
         }
 
     def without(self, kept: Collection[Combination]) -> dict[str, int]:
         """Returns the numbers of conditions and of trials that are not among some combinations."""
-        averaged = {condition for (_, condition), combinations in self._trials.items() if any(one in kept for one in combinations)}
-        every = {condition for _, condition in self._trials}
-        trials = sum(n for combinations in self._trials.values() for one, n in combinations.items() if one not in kept)
+        averaged = {condition for (_, condition), combinations in self.trials.items() if any(one in kept for one in combinations)}
+        every = {condition for _, condition in self.trials}
+        trials = sum(n for combinations in self.trials.values() for one, n in combinations.items() if one not in kept)
         return {"conditions": len(every - averaged), "trials": trials}
 
 

@@ -46,16 +46,17 @@ class Emulator:
         kernels = library.kernels
         unit = float(np.abs(means - data).max()) or 1.0  # so that no square is too large for a float
         means, data = means / unit, data / unit
+        self._middle: Array = means.mean(axis=0)
+        deviation: Array = means.std(axis=0)
+        deviation[deviation == 0] = 1.0
         self._points, self._data, self._axes = points, data, points.shape[1]
         lengths = kernels.RBF(np.full(self._axes, 0.5), (0.05, 20.0))
         kernel = kernels.ConstantKernel(1.0, (1e-2, 1e4)) * lengths + kernels.WhiteKernel(1e-6, (1e-10, 1.0))
         with warnings.catch_warnings(), _one_thread():
-            warnings.simplefilter("ignore")  # that an estimate is at a bound, as it is for a straight line
-            process = library.GaussianProcessRegressor(kernel, normalize_y=True).fit(points, means)
+            warnings.simplefilter("ignore")  # that an estimate is at its bound: that of a straight line is
+            process = library.GaussianProcessRegressor(kernel).fit(points, (means - self._middle) / deviation)
         self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
-        deviation, middle = (np.broadcast_to(row, data.shape) for row in (process._y_train_std, process._y_train_mean))
         self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
-        self._middle: Array = middle
         self._starts = np.vstack([points, np.random.default_rng(1).random((STARTS, self._axes))])
         self._start_squares = self._squares(self._starts)
         found, squares = self._descend(self._starts[np.argsort(self._start_squares)[: 4 * self._axes]], range(self._axes))
@@ -94,7 +95,7 @@ class Emulator:
         return bounds[0], bounds[1]
 
     def bound(self, axis: int, *, upper: bool) -> Array:
-        """Returns the point at a bound of the interval of a parameter, or at the end of its range, (p,): where a candidate tells most
+        """Returns the point at a bound of the interval of a parameter, or at the end of its range, (p,): where a candidate says most
         about this bound."""
         values, squares = self._profile(axis)
         return values[np.flatnonzero(squares <= self._most)[-1 if upper else 0]]
