@@ -285,7 +285,7 @@ def _show_fit(result: FitResult, out: Output) -> None:
         low, high = (none if bound is None else f"{bound:g}" for bound in (one.low, one.high))
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
     if not result.is_confirmed and not few:
-        out.line("No candidate fits as well as those between them should: the search has not ended; run more candidates (or more trials)")
+        out.line("No candidate fits as well as values between them should: the search has not ended; run more candidates")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
             r, r2 = ("none" if value is None else f"{value:.3f}" for value in (found.r, found.r2))
@@ -293,7 +293,7 @@ def _show_fit(result: FitResult, out: Output) -> None:
     for line in _effects(result.fit, result.ablated):
         out.line(line)
     if failing := [one for one in result.tried if one.failed]:
-        counts = f"{sum(one.failed for one in failing):,} of {sum(one.trials for one in failing):,} trials"
+        counts = f"{sum(one.failed for one in failing):,} of {sum(one.trials for one in result.tried):,} trials"
         out.line(("warning", "bold red"), f": in {len(failing)} of {result.candidates} candidates, {counts} failed; see tried in fit.json")
     for number, one in enumerate(result.recovered, start=1):
         pairs = ", ".join(f"{each.name} {one[f'true {each.name}']:g} found as {one[each.name]:g}" for each in result.parameters)

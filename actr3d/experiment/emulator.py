@@ -26,7 +26,9 @@ STARTS = 2**12
 """The number of points, drawn evenly, from the best of which the search for a minimum begins."""
 DESCENTS = 15
 """The maximum number of steps of this search."""
-LEAST = 1e-12
+ZOOM, ZOOMS = 10, 5
+"""The number of parts into which the step with the bound of an interval is divided, and how often values are compared."""
+LEAST = 1e-10
 """The least sum of squares that differs from 0, as a part of the greatest squared difference of any mean of a candidate."""
 
 
@@ -34,14 +36,16 @@ class Emulator:
     """The sum of squared differences between a model's means and data, at all values of the parameters.
 
     Each mean is predicted on its own; all share how quickly they change along each parameter, and how noisy they are. Both are estimated.
+    Where the nearest candidate is one at which the model failed, it is expected to fail, too: the sum of squares is infinite there.
 
     Args:
         points: The candidates, (n, p), each parameter from 0 to 1.
         means: Their means, (n, k).
         data: The means to fit, (k,).
+        failed: The candidates at which the model failed, (f, p).
     """
 
-    def __init__(self, points: Array, means: Array, data: Array) -> None:
+    def __init__(self, points: Array, means: Array, data: Array, failed: Array | None = None) -> None:
         library: Any = import_module("sklearn.gaussian_process")  # here, because this takes a second
         kernels = library.kernels
         unit = float(np.abs(means - data).max()) or 1.0  # so that no square is too large for a float
@@ -50,6 +54,7 @@ class Emulator:
         deviation: Array = means.std(axis=0)
         deviation[deviation == 0] = 1.0
         self._points, self._data, self._axes = points, data, points.shape[1]
+        self._failed = np.empty((0, self._axes)) if failed is None else failed
         lengths = kernels.RBF(np.full(self._axes, 0.5), (0.05, 20.0))
         kernel = kernels.ConstantKernel(1.0, (1e-2, 1e4)) * lengths + kernels.WhiteKernel(1e-6, (1e-10, 1.0))
         with warnings.catch_warnings(), _one_thread():
@@ -66,56 +71,61 @@ class Emulator:
         self._most = max(float(squares[best]), LEAST)
         if (free := len(data) - self._axes) > 0:
             self._most *= 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
-        differences = means - data
-        self._good = points[np.einsum("nk,nk->n", differences, differences) <= self._most]
-        self.is_confirmed = len(self._good) > 0
-        """Whether a candidate fits as well as the minimum, within the interval; otherwise, the minimum is a guess."""
+        self.is_confirmed = bool(np.any(self._squares(points) <= self._most))
+        """Whether a candidate fits about as well as the minimum, but for the noise of its means; otherwise, the minimum is a guess."""
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
-        """Returns the bounds of the 95 % interval of a parameter; None where the range ends first, and while the minimum is a guess.
+        """Returns the bounds of the 95 % interval of a parameter; None where the range ends first or the model fails, and while the
+        minimum is a guess.
 
-        It contains all candidates that fit as well. If values that do are apart from each other, it contains what is between them.
+        If values that fit are apart from each other, it contains what is between them.
 
         With few more means than parameters, an interval is wide, because the residual variance is uncertain. With no more means than
         parameters, this variance cannot be estimated, and both bounds are None.
         """
         if len(self._data) <= self._axes or not self.is_confirmed:
             return None, None
-        values, squares = self._profile(axis)
-        good = self._good[:, axis]
-        inside = np.flatnonzero(squares <= self._most)
-        bounds: list[float | None] = []
-        for number, beyond, outermost in ((inside[0], -1, min), (inside[-1], 1, max)):
-            if not 0 <= number + beyond < len(values):
-                bounds.append(None)
-                continue
-            part = (self._most - squares[number]) / (squares[number + beyond] - squares[number])
-            at = values[number] + part * (values[number + beyond] - values[number])
-            bounds.append(float(outermost([at[axis], *good])))
-        return bounds[0], bounds[1]
+        return self._bound(axis, upper=False)[1], self._bound(axis, upper=True)[1]
 
     def bound(self, axis: int, *, upper: bool) -> Array:
         """Returns the point at a bound of the interval of a parameter, or at the end of its range, (p,): where a candidate says most
         about this bound."""
-        values, squares = self._profile(axis)
-        return values[np.flatnonzero(squares <= self._most)[-1 if upper else 0]]
+        return self._bound(axis, upper=upper)[0]
 
-    def _profile(self, axis: int) -> tuple[Array, Array]:
-        """Returns the least sum of squares at each step of the range of a parameter, over all others, and where it is.
+    def _bound(self, axis: int, *, upper: bool) -> tuple[Array, float | None]:
+        """Returns the outermost point that fits, and the bound of the interval there; None if the range ends, or the model fails, there."""
+        steps: Array = np.unique(np.append(np.linspace(0, 1, STEPS + 1), self.minimum[axis]))
+        starts, outermost = np.tile(self.minimum, (len(steps), 1)), self.minimum
+        from_worst = self._starts[np.argsort(self._start_squares)[::-1]]
+        starts[np.searchsorted(steps, np.rint(from_worst[:, axis] * STEPS) / STEPS)] = from_worst  # the best near each step comes last
+        starts[steps == self.minimum[axis]] = self.minimum
+        is_end = False
+        for _ in range(ZOOMS):
+            values, squares = self._profile(axis, steps, starts)
+            number = int(np.flatnonzero(squares <= self._most)[-1 if upper else 0])
+            outermost, beyond = values[number], number + (1 if upper else -1)
+            if not 0 <= beyond < len(steps):
+                is_end = float(outermost[axis]) in (0.0, 1.0)
+                break
+            is_end = not np.isfinite(squares[beyond])
+            low, high = sorted([float(steps[number]), float(steps[beyond])])
+            steps = np.linspace(low, high, ZOOM + 1)
+            starts = np.tile(outermost, (len(steps), 1))
+        return outermost, None if is_end else float(outermost[axis])
 
-        Returns:
-            The points, (m, p), and the sums, (m,). One of the points is the minimum.
+    def _profile(self, axis: int, steps: Array, starts: Array) -> tuple[Array, Array]:
+        """Returns the least sums of squares over all other parameters at some values of one, (m,), and where they are, (m, p).
+
+        Args:
+            axis: The parameter.
+            steps: Its values, in order.
+            starts: For each value, where the search begins.
         """
         others = [other for other in range(self._axes) if other != axis]
-        steps = np.unique([*np.linspace(0, 1, STEPS + 1), self.minimum[axis]])
-        values = np.tile(self.minimum, (len(steps), 1))
-        from_worst = self._starts[np.argsort(self._start_squares)[::-1]]
-        values[np.searchsorted(steps, np.rint(from_worst[:, axis] * STEPS) / STEPS)] = from_worst  # the best near each step comes last
-        values[:, axis] = steps
-        values[steps == self.minimum[axis]] = self.minimum
+        starts[:, axis] = steps
         with _one_thread():
-            values, squares = self._descend(values, others)
-            for shift in (1, -1, 1, -1):  # along a valley, what is best at one step is a start for the next
+            values, squares = self._descend(starts, others)
+            for shift in (1, -1, 1, -1) if others else ():  # along a valley, what is best at one step is a start for the next
                 started = np.roll(values, shift, axis=0)
                 started[:, axis] = steps
                 found, theirs = self._descend(started, others)
@@ -132,7 +142,11 @@ class Emulator:
 
     def _squares(self, points: Array) -> Array:
         differences, _ = self._predict(points)
-        return np.einsum("mk,mk->m", differences, differences)
+        squares = np.einsum("mk,mk->m", differences, differences)
+        if len(self._failed):
+            to_failed, to_others = (_least_distances(points, to) for to in (self._failed, self._points))
+            squares[to_failed < to_others] = np.inf
+        return squares
 
     def _descend(self, points: Array, axes: Sequence[int]) -> tuple[Array, Array]:
         """Moves points along some axes towards the least sum of squares near each of them, within 0 and 1: the Levenberg-Marquardt method.
@@ -160,6 +174,11 @@ class Emulator:
             points[better], squares[better] = tried[better], found[better]
             damping = np.clip(np.where(better, damping / 5, damping * 5), 1e-12, 1e12)
         return points, squares
+
+
+def _least_distances(points: Array, to: Array) -> Array:
+    """Returns the squared distance of each point from the nearest of others, (m,)."""
+    return np.min(np.sum((points[:, None, :] - to) ** 2, axis=2), axis=1)
 
 
 def _one_thread() -> Any:

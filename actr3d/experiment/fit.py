@@ -172,7 +172,7 @@ class Fitted:
 
     name: str
     value: float
-    """The value of the best candidate."""
+    """The value that fits best according to the emulator; that of the best candidate, if this is not confirmed or fails."""
     low: float | None
     """The lower bound of its interval; None if the data do not determine it within the range that was searched."""
     high: float | None
@@ -316,14 +316,17 @@ class Fit:
             raise ExperimentError(
                 f"measure '{self.measure}': no candidate has a mean in all conditions of the target, without failed trials{failure}"
             )
-        values = self._points[best]
         emulator = self._emulator(self.target)
         intervals = [emulator.interval(axis) for axis in range(len(self._ranges))]
+        values = self._values_at(emulator.minimum)
+        fitted = self._simulate("candidate", f"fitted values: {_text_of(values)}", self._experiment(values))
+        if not emulator.is_confirmed or not math.isfinite(rmse(fitted.means, self.target)):
+            values, fitted = self._points[best], tried[best]
         return FitResult(
             design=self._design,
             measure=self.measure,
             parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
-            fit=_agreement_of(tried[best], self.target),
+            fit=_agreement_of(fitted, self.target),
             candidates=candidates,
             is_confirmed=emulator.is_confirmed,
             tried=tuple(
@@ -347,9 +350,9 @@ class Fit:
                 rng.shuffle(order)
                 columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), DIGITS)
             return columns
-        proposed = self._proposed_by_emulator(number - STARTING)
-        if proposed is not None and proposed not in self._points:
-            return proposed
+        for proposed in self._proposed_by_emulator(number - STARTING):
+            if proposed not in self._points:
+                return proposed
         distributions: dict[str, Any] = {one.name: optuna.distributions.FloatDistribution(one.low, one.high) for one in self._ranges}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
@@ -357,22 +360,21 @@ class Fit:
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         study = optuna.create_study(sampler=sampler)
         for point, one in zip(self._points, self._simulated, strict=True):
-            loss = rmse(one.means, self.target)
-            if math.isfinite(loss):
-                study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=loss))
+            study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=rmse(one.means, self.target)))
         return {name: round(value, DIGITS) for name, value in study.ask(distributions).params.items()}
 
-    def _proposed_by_emulator(self, number: int) -> dict[str, float] | None:
-        """Returns what the emulator proposes, in turn the values that fit best and a bound of an interval; None where it is TPE's turn."""
-        if not any(math.isfinite(rmse(one.means, self.target)) for one in self._simulated):
-            return None
+    def _proposed_by_emulator(self, number: int) -> list[dict[str, float]]:
+        """Returns what the emulator proposes, in turn the values that fit best and a bound of an interval, rounded ever less; nothing where
+        it is TPE's turn."""
         turn, is_bound = divmod(number, 2)
         turn %= 2 * len(self._ranges) + 1
-        if is_bound and turn == 2 * len(self._ranges):
-            return None
+        usable = any(math.isfinite(rmse(one.means, self.target)) for one in self._simulated)
+        if not usable or (is_bound and turn == 2 * len(self._ranges)):
+            return []
         emulator = self._emulator(self.target)
         point = emulator.bound(turn // 2, upper=turn % 2 == 1) if is_bound else emulator.minimum
-        return self._values_at(np.round(point * STEPS) / STEPS)  # rounded: a candidate close to an earlier one adds little
+        rounded = [np.round(point * steps) / steps for steps in (STEPS, 100 * STEPS)]  # a candidate close to an earlier one adds little
+        return [self._values_at(one) for one in (rounded[:1] if is_bound else [*rounded, point])]
 
     def _evaluate(self, number: int, what: str) -> None:
         point = self._propose(number)
@@ -442,11 +444,11 @@ class Fit:
         return _agreement_of(found, self.target if target is None else target)
 
     def _emulator(self, target: Mapping[Cell, float]) -> Emulator:
-        """Returns the emulator that all candidates until now give, those with a mean in all conditions of the target."""
-        usable = [n for n, one in enumerate(self._simulated) if math.isfinite(rmse(one.means, target))]
-        points = [[(self._points[n][one.name] - one.low) / (one.high - one.low) for one in self._ranges] for n in usable]
-        means = [[self._simulated[n].means[cell] for cell in target] for n in usable]
-        return Emulator(np.array(points), np.array(means), np.array([*target.values()]))
+        """Returns the emulator that all candidates until now give: those with a mean in all conditions of the target, and those without."""
+        points = np.array([[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points])
+        usable = np.array([math.isfinite(rmse(one.means, target)) for one in self._simulated])
+        means = [[one.means[cell] for cell in target] for one, has in zip(self._simulated, usable, strict=True) if has]
+        return Emulator(points[usable], np.array(means), np.array([*target.values()]), points[~usable])
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
         parts = zip(self._ranges, point.tolist(), strict=True)

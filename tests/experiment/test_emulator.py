@@ -126,18 +126,44 @@ def test_no_interval_is_given_while_the_minimum_is_a_guess() -> None:
     assert emulator.interval(0) == (None, None)
 
 
-def test_intervals_contain_all_candidates_that_fit_as_well() -> None:
-    """Candidates whose means jump, where a smooth function cannot follow."""
-    data = np.array([0.6, 0.4, 0.55, 0.45])
-    points = np.random.default_rng(3).random((30, 1))
-    means = np.where(np.abs(points - 0.5) < 0.2, 0.5, 0.5 + np.sign(points - 0.5)) * np.ones(4)
-    emulator = Emulator(points, means, data)
-    squares = np.sum((means - data) ** 2, axis=1)
+def test_an_interval_that_is_narrower_than_a_step_is_as_exact() -> None:
+    data = 0.4567 * X + np.random.default_rng(1).normal(0, 1e-4, 8)
+    best = float(data @ X / (X @ X))
+    half = float(stdtrit(7, 0.975) * math.sqrt(np.sum((data - best * X) ** 2) / 7 / (X @ X)))
+    points = np.append(np.linspace(0, 1, 12), best)[:, None]
+    low, high = Emulator(points, points * X, data).interval(0)
+    assert (low, high) == (pytest.approx(best - half, abs=half / 5), pytest.approx(best + half, abs=half / 5))
+
+
+def test_noise_of_the_simulation_does_not_make_the_minimum_a_guess() -> None:
+    """With many means, the candidates' own noise is larger than what the interval allows."""
+    x, rng = np.linspace(1, 8, 50), np.random.default_rng(2)
+    data = 0.5 * x + rng.normal(0, 0.05, 50)
+    points = np.append(np.linspace(0, 1, 15), np.full(15, 0.5) + rng.normal(0, 0.01, 15))[:, None]
+    emulator = Emulator(points, points * x + rng.normal(0, 0.05, (30, 50)), data)
+    assert emulator.is_confirmed
     low, high = emulator.interval(0)
-    if emulator.is_confirmed:
-        good = points[squares <= squares.min() * 1.0001, 0]
-        assert low is None or low <= good.min()
-        assert high is None or high >= good.max()
+    assert low is not None
+    assert high is not None
+    assert low < 0.5 < high < low + 0.02
+
+
+@pytest.mark.parametrize("true", [0.3, 0.6])
+def test_values_at_which_the_model_fails_are_not_searched(true: float) -> None:
+    """It fails above 0.5."""
+    points, data = np.random.default_rng(2).random((10, 1)), true * X + 0.01 * (-1) ** X
+
+    def emulator_of(points: Any) -> Emulator:
+        works = points[:, 0] <= 0.5
+        return Emulator(points[works], points[works] * X, data, points[~works])
+
+    for _ in range(12):
+        points = np.vstack([points, emulator_of(points).minimum])
+    emulator = emulator_of(points)
+    assert emulator.minimum[0] == pytest.approx(min(true, 0.5), abs=0.01)
+    low, high = emulator.interval(0)
+    assert low is not None
+    assert (high is None) == (true > 0.5)
 
 
 def test_a_single_candidate_determines_nothing() -> None:

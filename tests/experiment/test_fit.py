@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from scipy.special import stdtrit
 
 from actr3d.cli import main
 from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
@@ -238,6 +239,30 @@ def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) 
         assert one["slope"] == pytest.approx(one["true slope"], abs=0.4)
 
 
+def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client: Any) -> None:
+    """The range is a thousand times as wide as the interval."""
+    line = LINE.replace("noise = 0.1", "noise = 0.0").replace("offset = 0.5", "offset = 0.9")
+    result = fit_of(tmp_path, client, "slope=0..100", line=line).run(STARTING + 8)
+    (slope,) = result.parameters
+    best = 1.4 + 0.1 * 15 / 55  # of a line through 0.9, for data of one through 1
+    assert result.is_confirmed
+    assert slope.value == pytest.approx(best, abs=0.003)
+    assert result.fit.rmse == pytest.approx(math.sqrt(0.01 - 0.01 * 15 * 15 / 55 / 5), rel=0.02)
+    assert slope.low is not None
+    assert slope.high is not None
+    half = float(stdtrit(4, 0.975)) * result.fit.rmse * math.sqrt(5 / 4 / 55)
+    assert (slope.low, slope.high) == (pytest.approx(best - half, abs=half / 10), pytest.approx(best + half, abs=half / 10))
+
+
+def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, client: Any) -> None:
+    line = LINE.replace("self.value = slope", "assert slope <= 1.2\n        self.value = slope")
+    result = fit_of(tmp_path, client, "slope=0..3", line=line).run(STARTING + 10)
+    (slope,) = result.parameters
+    assert 1.1 < slope.value <= 1.2
+    assert slope.high is None
+    assert sum(one.failed > 0 for one in result.tried[STARTING:]) <= 6
+
+
 def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, client: Any) -> None:
     (tmp_path / "a").mkdir()
     whole = fit_of(tmp_path / "a", client).run(8)
@@ -245,7 +270,7 @@ def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, cli
     again = first.run(8)
     assert again == whole
     folders = [path.name for path in (tmp_path / "a" / "fit").iterdir()]
-    assert len(folders) == 8
+    assert len(folders) == 9  # also the fitted values
     assert all(name.startswith("candidate ") for name in folders)
 
 
