@@ -9,7 +9,7 @@ from collections.abc import Collection, Generator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from functools import cache
-from itertools import groupby
+from itertools import chain, groupby
 from operator import itemgetter
 from pathlib import Path
 from statistics import fmean
@@ -25,6 +25,9 @@ NUMERIC = "typeof(value) IN ('integer', 'real')"
 """The SQL for whether a trial has a value of the measure."""
 FAILED = "json_extract(data, '$.error') IS NOT NULL"
 """The SQL for whether a trial has failed."""
+
+ORDER = {"position", "trial"}
+"""Columns with the order of trials: at one position, each participant may have another condition."""
 
 Combination = tuple[str, int, str]
 """A place and a condition as a table has them: the columns of the place as JSON, the number of the value, those of the condition."""
@@ -48,6 +51,11 @@ class MeansFigure:
     condition: Sequence[str]
     """The columns whose values, with the number, make a condition."""
 
+    @property
+    def by_order(self) -> bool:
+        """Whether it shows the order of trials."""
+        return not ORDER.isdisjoint(self.place)
+
 
 def means(
     *paths: Path,
@@ -62,11 +70,13 @@ def means(
 
     A condition is a combination of levels of all factors, drawn or not, of a group, and of a number of the measure. At each place of the
     figure, `mean` is the mean of the conditions, all of which weigh the same; that of a condition is the mean of participants' means.
+    In a figure `by_order` of trials, it is the mean of the participants' means.
 
     Two experiments are compared over the conditions that both have and in which no trial failed: the means of both at one place are over
-    the same conditions. `failed` is the number of conditions in which a trial of either failed, and the numbers of trials there (or of
-    values, of a measure that has several a trial) with a value in each of the two. `left_out` are the numbers of conditions, and of
-    trials, that only one of them has. `apart` are the factors of which the two have no level in common.
+    the same conditions, unless it is a place in the order of trials. `failed` is the number of conditions in which a trial of either
+    failed, and the numbers of trials there (or of values, of a measure that has several a trial) with a value in each of the two.
+    `left_out` are the numbers of conditions, and of trials, that only one of them has. `apart` are the factors of which the two have no
+    level in common.
 
     Args:
         paths: The tables.
@@ -86,7 +96,8 @@ def means(
         tables = [stack.enter_context(closing(Table(path))) for path in paths]
         trials = [_Trials(table, figure, more) for table, more in zip(tables, defaults or [{} for _ in tables], strict=True)]
         points = {"points": trials[0].points()} if len(trials) == 1 else _compared(*trials)
-        return {"x": x, "by": list(by), "measure": measure, "unit": trials[0].unit, "columns": tables[0].columns, **points}
+        shown = {"x": x, "by": list(by), "by_order": figure.by_order, "measure": measure, "unit": trials[0].unit}
+        return {**shown, "columns": tables[0].columns, **points}
 
 
 def _compared(mine: _Trials, theirs: _Trials) -> dict[str, Any]:
@@ -96,7 +107,7 @@ def _compared(mine: _Trials, theirs: _Trials) -> dict[str, Any]:
     both = mine.conditions(), theirs.conditions()
     failed = both[0].failed | both[1].failed
     trials = [one.leave_out(failed) for one in both]
-    kept = both[0].beside(both[1]), both[1].beside(both[0])
+    kept = [one.beside(other, by_order=mine.figure.by_order) for one, other in (both, both[::-1])]
     left_out = [one.without(combinations) for one, combinations in zip(both, kept, strict=True)]
     levels = zip(mine.names, both[0].levels, both[1].levels, strict=True)
     return {
@@ -153,7 +164,8 @@ class _Trials:
                 of_conditions = groupby(of_place, itemgetter(0, 1, 2))
                 conditions = [[cell[3:] for cell in of] for combination, of in of_conditions if kept is None or combination in kept]
                 if conditions:
-                    points.append({"at": self._at(place, number), **_mean(conditions)})
+                    averaged = [_pooled(conditions)] if self.figure.by_order else conditions
+                    points.append({"at": self._at(place, number), **_mean(averaged)})
                 if len(points) > MAX_POINTS:
                     raise TableError(f"{' and '.join(self.figure.place)} have too many different values for a figure")
         return sorted(points, key=lambda point: [*map(_level, point["at"])])
@@ -234,15 +246,16 @@ class _Conditions:
         found = [key for key in self.trials if key[1][: self._names] in failed]
         return sum(sum(self.trials.pop(key).values()) for key in found)
 
-    def beside(self, other: _Conditions) -> set[Combination]:
-        """Returns the combinations that are averaged beside another experiment: both have their conditions, also at each place of both."""
+    def beside(self, other: _Conditions, *, by_order: bool) -> set[Combination]:
+        """Returns the combinations that are averaged beside another experiment: both have their conditions, also at each place of both,
+        unless places are in the order of trials."""
         conditions = {condition for _, condition in self.trials} & {condition for _, condition in other.trials}
         here, there = ({place for place, condition in one.trials if condition in conditions} for one in (self, other))
         both = here & there
         return {
             combination
             for (place, condition), combinations in self.trials.items()
-            if condition in conditions and (place not in both or (place, condition) in other.trials)
+            if condition in conditions and (by_order or place not in both or (place, condition) in other.trials)
             for combination in combinations
         }
 
@@ -273,6 +286,15 @@ def _level(value: Any) -> Level:
             return "list", tuple(map(_level, cast("Sequence[Any]", value)))
         case _:
             return "text", value if isinstance(value, str) else json.dumps(value)
+
+
+def _pooled(conditions: Sequence[Sequence[tuple[Any, int, float]]]) -> list[tuple[Any, int, float]]:
+    """Returns the numbers of trials and means of participants over all conditions, in which each trial weighs the same."""
+    numbers, sums = defaultdict[Any, int](int), defaultdict[Any, float](float)
+    for participant, number, mean in chain.from_iterable(conditions):
+        numbers[participant] += number
+        sums[participant] += number * mean
+    return [(participant, number, sums[participant] / number) for participant, number in numbers.items()]
 
 
 def _mean(conditions: Sequence[Sequence[tuple[Any, int, float]]]) -> dict[str, Any]:

@@ -166,10 +166,12 @@ function comparisonText(pair, other, over) {
 }
 
 /** Returns what the points of a figure and their bars are. */
-function meansText(points) {
+function meansText(points, { by_order: byOrder, failures }) {
   const without = points.filter(({ error }) => error === null).length;
-  const bars = without < points.length ? ", ± 1 standard error over participants" : "";
-  return `Means of the conditions, each weighing the same${bars}.${without > 0 ? " No bar where a condition has one participant." : ""}`;
+  const bars = without < points.length ? `, ± 1 standard error${byOrder ? "" : " over participants"}` : "";
+  const means = byOrder ? "Means of the participants" : "Means of the conditions, each weighing the same";
+  const single = without > 0 ? ` No bar where ${byOrder ? "there is" : "a condition has"} one participant.` : "";
+  return `${means}${bars}.${single}${failures > 0 ? " Without the trials that failed: those that are left may be the easier ones." : ""}`;
 }
 
 /** The choice of another experiment to draw beside this one. */
@@ -205,7 +207,7 @@ function Plot({ lines, known, about, children }) {
   const { width, height } = size.value;
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
   const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...about.entries];
-  const caption = `${meansText(lines.flatMap((line) => line.points))} ${about.counts}`;
+  const caption = `${meansText(lines.flatMap((line) => line.points), about)} ${about.counts}`;
   const title = headText({ name: about.measure, unit: about.unit });
 
   useEffect(() => {
@@ -311,7 +313,7 @@ export function Figure({ experiment, facts, columns: all }) {
       ${comparison ? html`<p class="problem warning">${comparison}</p>` : null}
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, comparison: together ? comparison : "", over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsOf(answer, chosen, experiment, together && other), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, comparison: together ? comparison : "", failures: together ? 0 : failures, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsOf(answer, chosen, experiment, together && other), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

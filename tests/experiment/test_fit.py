@@ -255,7 +255,7 @@ def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client:
 
 
 def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, client: Any) -> None:
-    line = LINE.replace("self.value = slope", "assert slope <= 1.2\n        self.value = slope")
+    line = LINE.replace("slope = 2.0", "slope = 1.0").replace("self.value = slope", "assert slope <= 1.2\n        self.value = slope")
     result = fit_of(tmp_path, client, "slope=0..3", line=line).run(STARTING + 10)
     (slope,) = result.parameters
     assert 1.1 < slope.value <= 1.2

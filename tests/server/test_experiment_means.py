@@ -313,3 +313,25 @@ def test_a_measure_with_another_unit_is_not_compared(tmp_path: Path) -> None:
     mine, theirs = (written(tmp_path / unit, trials([1], [1]), unit) for unit in ("s", "ms"))
     with pytest.raises(TableError, match="its time is in ms, and here in s"):
         means(mine, theirs, x="n", by=[], measure="time", factors=["n", "m"])
+
+
+def test_in_the_order_of_trials_participants_are_averaged_whatever_conditions_they_have(tmp_path: Path) -> None:
+    rng, rows = Random(3), list[Row]()
+    for who in range(6):
+        conditions = list(product([1, 2], [1, 3]))
+        rng.shuffle(conditions)
+        rows += [
+            {"participant": f"all {who}", "group": "all", "position": place, "n": n, "m": m, "time": n * m + who / 10}
+            for place, (n, m) in enumerate(conditions, start=1)
+        ]
+    for found in (
+        means(written(tmp_path / "alone.sqlite", rows), x="position", by=[], measure="time", factors=["n", "m"]),
+        compared(tmp_path, rows, rows, x="position"),
+    ):
+        assert found["by_order"]
+        assert [point["at"] for point in found["points"]] == [[1], [2], [3], [4]]
+        for point in found["points"]:
+            values = [row["time"] for row in rows if row["position"] == point["at"][0]]
+            assert point["mean"] == pytest.approx(fmean(values))
+            assert point["error"] == pytest.approx(stdev(values) / math.sqrt(6))
+            assert (point["participants"], point["trials"]) == (6, 6)
