@@ -17,6 +17,10 @@ from workbench.language.model_text import ChunkText, Method, ModelText, Name, Pi
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
 
+_MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["']\s*:"""
+"""A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}."""
+_SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
+"""A slot and its value in a string."""
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -31,8 +35,8 @@ class Meaning:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Word:
-    """A word of a text: a name in its code, or a slot or a variable in a text of a chunk or pattern."""
+class WordPlace:
+    """One place of a word: a name in the code, or a slot or a variable in a text of a chunk or pattern."""
 
     start: int
     name: Name | None
@@ -114,17 +118,20 @@ class SameWords:
         found = {one.start: self._is_same(word, target, one) for one in words}
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
-        if target.meaning.what == "member":
-            # Texts such as Live("parameter", "walker.speed"), getattr(self, "speed") and Walker(**{"speed": 1}).
-            texts_of_word = rf"""["'][\w.]*\.({word})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({word})["']|["']({word})["']\s*:"""
-            unproven |= {one.start(one.lastindex or 0) for one in re.finditer(texts_of_word, self.model.text)}
-        if target.meaning.what == "slot":
-            inside = [(one.start, one.end) for one in self.model.texts]
-            texts_of_word = re.finditer(rf"""(?<![^\s"'])({re.escape(word)}):(?![\s"'=])""", self.model.text)
-            texts = self.model.other_texts
-            places = {one.start() for one in texts_of_word if any(begin <= one.start() < end for begin, end in texts)}
-            unproven |= {at for at in places if not any(begin <= at < end for begin, end in inside)}
-        return same, unproven - same
+        strings = self._in_strings(_MEMBER if target.meaning.what == "member" else _SLOT if target.meaning.what == "slot" else "", word)
+        return same, (unproven | strings) - same
+
+    def _in_strings(self, pattern: str, word: str) -> set[int]:
+        """Returns where a word stands in strings that are no known texts of chunks or patterns, in the way that a pattern describes."""
+        if not pattern:
+            return set()
+        places = {one.start(one.lastindex or 0) for one in re.finditer(pattern.format(re.escape(word)), self.model.text)}
+        known = [(one.start, one.end) for one in self.model.texts]
+        return {
+            at
+            for at in places
+            if any(begin <= at < end for begin, end in self.model.other_texts) and not any(begin <= at < end for begin, end in known)
+        }
 
     def owner(self, at: int) -> str:
         """Returns the class of the text of which the word at a position is a member; empty if it is a member of none."""
@@ -138,20 +145,20 @@ class SameWords:
 
     # -- what words mean
 
-    def _words(self, word: str) -> Iterator[Word]:
+    def _words(self, word: str) -> Iterator[WordPlace]:
         """Yields all words of a text."""
         for text in self.model.texts:
             for slot in text.slots:
                 if slot.text == word:
-                    yield Word(start=slot.start, name=None, meaning=self._of_slot(text, slot))
+                    yield WordPlace(start=slot.start, name=None, meaning=self._of_slot(text, slot))
             for piece in self._variables(text):
                 if piece.text == word:
-                    yield Word(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
+                    yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
         for found in re.finditer(rf"\w\[[\"']({re.escape(word)})[\"']\]", self.model.text):
-            yield Word(start=found.start(1), name=None, meaning=Meaning(what="slot"))
+            yield WordPlace(start=found.start(1), name=None, meaning=Meaning(what="slot"))
         for name in self.model.names:
             if name.text == word:
-                yield Word(start=name.start, name=name, meaning=self._of_name(name))
+                yield WordPlace(start=name.start, name=name, meaning=self._of_name(name))
 
     @staticmethod
     def _variables(text: ChunkText) -> list[Piece]:
@@ -229,7 +236,7 @@ class SameWords:
 
     # -- which are the same
 
-    def _is_same(self, word: str, target: Word, other: Word) -> bool | None:
+    def _is_same(self, word: str, target: WordPlace, other: WordPlace) -> bool | None:
         """Returns whether two places of a word mean the same; None if it is not known."""
         one, two = target.meaning, other.meaning
         assert one is not None
@@ -256,7 +263,7 @@ class SameWords:
         unknown = above is None and any(":" in str(kind) and not str(kind).startswith("builtins:") for kind in two.owners)
         return None if unknown or two.owners & (above or set()) else False
 
-    def _may_be(self, word: str, target: Word, other: Word) -> bool | None:
+    def _may_be(self, word: str, target: WordPlace, other: WordPlace) -> bool | None:
         """Returns False if a word whose meaning is not known cannot mean the same as another; None if it can."""
         one, name = target.meaning, other.name
         assert one is not None
