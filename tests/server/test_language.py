@@ -622,6 +622,8 @@ report(Base(), size=4)
         (APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'), "where it is defined is not known"),
         (APERTURE.replace('motor="busy:', 'motor="bu|sy:', 1), "'busy' is defined in .*, and keeps its name here"),
         (APERTURE.replace('    answer = "', '    ans|wer = "', 1), "whether 'answer' in line 302 is the same is not known"),
+        (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'squeeze' in line 301 is the same is not known"),
+        (APERTURE.replace("    pass_doorway =", "    pass_|doorway ="), "whether 'pass_doorway' in line 440 is the same is not known"),
         (APERTURE.replace("self.judged", "self.jud|ged", 1), "whether 'judged' in line 648 is the same is not known"),
         (WHOLE.replace("print(self.seen)", "print(getattr(self, 'seen'))").replace("self.seen =", "self.se|en ="), "'seen' in line 15"),
         (PAIRED.replace("def start", "def sta|rt"), "'start' is defined in .*, and keeps its name"),

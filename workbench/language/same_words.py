@@ -21,6 +21,7 @@ _MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,
 """A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}."""
 _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
+_VALUE = r"""["']({0})["']"""
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -101,7 +102,7 @@ class SameWords:
             of_library = self.members.library(own[0], word)
             if of_library:
                 raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
-            if any(word in self.model.agents[one].parts for one in self.members.family(own[0], word)):
+            if self._is_part(word, meaning):
                 what = "part"
         starts, unproven = self.places(word, start)
         if unproven:
@@ -119,7 +120,14 @@ class SameWords:
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
         strings = self._in_strings(_MEMBER if target.meaning.what == "member" else _SLOT if target.meaning.what == "slot" else "", word)
+        if self._is_part(word, target.meaning):  # SGOMS names planning units by values: planning_unit:squeeze
+            values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
+            strings |= {*values, *self._in_strings(_VALUE, word)}
         return same, (unproven | strings) - same
+
+    def _is_part(self, word: str, meaning: Meaning) -> bool:
+        own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
+        return any(word in self.model.agents[one].parts for agent in own for one in self.members.family(agent, word))
 
     def _in_strings(self, pattern: str, word: str) -> set[int]:
         """Returns where a word stands in strings that are no known texts of chunks or patterns, in the way that a pattern describes."""
