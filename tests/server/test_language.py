@@ -561,6 +561,7 @@ def other(number):
         (PAIRED.replace("screen = Screen", "scr|een = Screen"), "monitor", [114, 123, 136, 143, 161, 176, 177]),
         (PAIRED.replace("showing = ", "show|ing = ", 1), "shows", [91, 99, 101, 105, 115, 143, 161]),
         (PAIRED.replace('"showing:noun', '"show|ing:noun'), "shows", [91, 99, 101, 105, 115, 143, 161]),
+        (DOORWAY.replace("    seen = Buffer", "    se|en = Buffer"), "noticed", [49, 51, 64, 68, 69, 70]),
         (APERTURE.replace("def nears", "def nea|rs"), "is_close", None),
         (WHOLE.replace("self.seen =", "self.se|en ="), "known", [6, 12, 15]),
         (WHOLE.replace("def first", "def fi|rst"), "newest", [5, 14]),

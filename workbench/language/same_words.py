@@ -123,7 +123,7 @@ class SameWords:
         if self._is_part(word, target.meaning):  # SGOMS names planning units by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
-        return same, (unproven | strings) - same
+        return same, unproven | (strings - found.keys())
 
     def _is_part(self, word: str, meaning: Meaning) -> bool:
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
