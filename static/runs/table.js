@@ -113,6 +113,7 @@ export function Table({ list, open }) {
   const now = useSignal(Date.now() / 1000);
   const last = useRef(null);
   const focused = useSignal(null); // the id of the run whose row had the focus last
+  const spot = useRef(-1); // the number of that row, also once it is deleted
 
   useLayoutEffect(() => {
     const place = box.current;
@@ -131,10 +132,11 @@ export function Table({ list, open }) {
 
   const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.value.top / ROW) - AROUND));
   const beyond = Math.min(list.length, first + Math.ceil(seen.value.height / ROW) + 2 * AROUND);
-  const drawn = list.slice(first, beyond).map((_, n) => first + n);
   const kept = list.findIndex((run) => run.id === focused.value);
-  if (kept >= 0 && kept < first) drawn.unshift(kept);
-  if (kept >= beyond) drawn.push(kept);
+  if (kept >= 0) spot.current = kept;
+  // The rows before and after it are drawn too, for the keys that lead to them; when it is deleted, one of them gets the focus.
+  const near = focused.value === null ? [] : [-1, 0, 1].map((step) => spot.current + step).filter((number) => list[number]);
+  const drawn = [...new Set([...list.slice(first, beyond).map((_, n) => first + n), ...near])].sort((one, other) => one - other);
   // The key of a space is that of the row after it: no row is moved in the page when others come or go, which would take its focus away.
   const space = (rows, key) => html`<tr class="space" key="before ${key}" aria-hidden="true" style=${{ height: `${rows * ROW}px` }}></tr>`;
 

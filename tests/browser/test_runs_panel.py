@@ -235,7 +235,31 @@ def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, work
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     expect(row(page, order[5])).to_have_count(0)
-    expect(page.locator("tr[data-run] input:focus")).to_have_count(1)  # of a row that is drawn
+    expect(row(page, order[6]).locator("input")).to_be_focused()
+    page.get_by_label("Search recordings").focus()
+    for copy in copies:
+        copy.unlink(missing_ok=True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("key", "step"), [("Tab", 1), ("Shift+Tab", -1)])
+def test_a_key_leads_from_a_row_that_is_scrolled_away_to_the_one_beside_it(
+    page: Page, workbench: Served, recordings: Path, key: str, step: int
+) -> None:
+    name = recorded(workbench, "counting.py")
+    copies = [recordings / f"tabs-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(60)]
+    for copy in copies:
+        shutil.copy(recordings / f"{name}.sqlite", copy)
+    open_tab(page, "Runs")
+    page.get_by_label("Search recordings").fill("tabs")
+    order = [copy.stem for copy in reversed(copies)]
+    page.keyboard.press("Shift")  # from now on by keys
+    row(page, order[5]).locator("input").focus()
+    page.locator(".runs-list").evaluate("list => (list.scrollTop = list.scrollHeight)")
+    expect(row(page, order[59])).to_be_visible()
+    expect(row(page, order[5]).locator("input")).to_be_focused()
+    page.keyboard.press(key)
+    expect(row(page, order[5 + step]).locator("input")).to_be_focused()
     page.get_by_label("Search recordings").focus()
     for copy in copies:
         copy.unlink(missing_ok=True)

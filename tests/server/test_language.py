@@ -6,6 +6,7 @@ import asyncio
 import json
 import os
 import py_compile
+import re
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -33,6 +34,9 @@ from workbench.loader import listing_of
 
 MODELS = Path(__file__).parents[2] / "models"
 COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
+FAN = (MODELS / "fan_effect.py").read_text(encoding="utf-8").replace("|", "or")
+PAIRED = (MODELS / "paired_associates.py").read_text(encoding="utf-8").replace("|", "or")
+APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8").replace("|", "or")
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
 
 SEEING = """from actr3d.actr import *
@@ -506,6 +510,130 @@ def test_an_attribute_that_a_method_sets_is_renamed_wherever_its_class_has_it(as
 def test_a_method_is_renamed_with_those_of_its_subclasses_that_replace_it(ask: Asked) -> None:
     after, count = renamed(ask, TOTAL.replace("def look", "def lo|ok", 1), "see")
     assert (count, after.count("def look"), after.replace("|", "").count("def see")) == (2, 0, 2)
+
+
+WHOLE = """from actr3d.actr import *
+
+class Eyes(Model):
+    @property
+    def first(self):
+        return self.parent.seen
+
+class Whole(ACTR):
+    goal = Buffer()
+    eyes = Eyes()
+    def init():
+        self.seen = 4
+        goal.set("task")
+    def look(goal="task", eyes="first:4"):
+        print(self.seen)
+"""
+SCOPES = """from math import sqrt
+
+size = 3
+twice = [size for size in range(size) if size]
+
+class Box:
+    size = size
+    sizes = [one for one in range(size)]
+    def grown(self, size=size):
+        return lambda size=size: size + self.size
+
+def other(number):
+    global size
+    size = {number: number for number in [number] if number}
+    return (number := number + 1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "lines"),
+    [
+        (FAN.replace("    answer = reaction", "    ans|wer = reaction"), "reply", [110, 123, 163, 164]),
+        (FAN.replace("self.parent.answer", "self.parent.ans|wer"), "reply", [110, 123, 163, 164]),
+        (FAN.replace("answer = reaction", "answer = reac|tion"), "delay", [110, 123, 162]),
+        (FAN.replace("imaginal = Buffer", "imag|inal = Buffer"), "image", [102, 116, 119, 137, 141, 145, 149, 153]),
+        (FAN.replace("self.person, ", "self.per|son, "), "who", [102, 126, 165]),
+        (FAN.replace("for person in dict", "for per|son in dict"), "who", [90, 91, 93]),
+        (FAN.replace("(person, location)", "(person, loca|tion)", 1), "where", [90, 92, 93]),
+        (FAN.replace("(person, location)", "(per|son, location)", 1), "who", [90, 91, 93]),
+        (PAIRED.replace("visual = Buffer", "vis|ual = Buffer"), "seen", [115, 129, 147, 166]),
+        (PAIRED.replace("screen = Screen", "scr|een = Screen"), "monitor", [114, 123, 136, 143, 161, 176, 177]),
+        (PAIRED.replace("showing = ", "show|ing = ", 1), "shows", [91, 99, 101, 105, 115, 143, 161]),
+        (PAIRED.replace('"showing:noun', '"show|ing:noun'), "shows", [91, 99, 101, 105, 115, 143, 161]),
+        (DOORWAY.replace("    seen = Buffer", "    se|en = Buffer"), "noticed", [49, 51, 64, 68, 69, 70]),
+        (APERTURE.replace("def nears", "def nea|rs"), "is_close", None),
+        (WHOLE.replace("self.seen =", "self.se|en ="), "known", [6, 12, 15]),
+        (WHOLE.replace("def first", "def fi|rst"), "newest", [5, 14]),
+        (WHOLE.replace("eyes = Eyes", "ey|es = Eyes"), "vision", [10, 14]),
+        (SCOPES.replace("\nsize = 3", "\nsi|ze = 3"), "width", [3, 4, 7, 13, 14]),
+        (SCOPES.replace("[size for", "[si|ze for"), "width", [4]),
+        (SCOPES.replace("    size = size", "    si|ze = size"), "width", [7, 8, 9, 10]),
+        (SCOPES.replace("size + self", "si|ze + self"), "width", [10]),
+        (SCOPES.replace("self, size", "self, si|ze"), "width", [9, 10]),
+        (SCOPES.replace("{number:", "{num|ber:"), "width", [14]),
+        (SCOPES.replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
+    ],
+)
+def test_a_name_is_renamed_in_all_its_places(ask: Asked, text: str, name: str, lines: list[int] | None) -> None:
+    plain = text.replace("|", "")
+    changed = sorted({plain.count("\n", 0, start) + 1 for start, _ in ask("rename", text, name)["changes"]})
+    assert changed == (lines or [number for number, line in enumerate(plain.splitlines(), 1) if re.search(r"\bnears\b", line)])
+
+
+REPORTED = """from actr3d.actr import *
+
+class Base(ACTR):
+    goal = Buffer()
+    def init():
+        self.total = 0
+        self.things = []
+    def look(goal="x"):
+        for thing in self.things:
+            print(thing.total)
+
+class Plain:
+    size = 2
+
+def report(model, **more):
+    print(model.size)
+
+def steps(pace=1):
+    return pace
+
+report(Base(), size=4)
+[steps][0](pace=2)
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (REPORTED.replace("thing.total", "thing.to|tal"), "'total' cannot be renamed: where it is defined is not known"),
+        (REPORTED.replace("self.total", "self.to|tal"), "whether 'total' in line 10 is the same is not known"),
+        (FAN.replace("random.choice", "random.cho|ice"), "is defined in|where it is defined is not known"),
+        (PAIRED.replace("random.sample", "random.sam|ple"), "is defined in|where it is defined is not known"),
+        (FAN.replace("imaginal.set", "imaginal.s|et"), "is defined in"),
+        (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
+        (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),
+        (DOORWAY.replace('seen=None, eye="busy', 'seen=None, eye="bu|sy'), "'busy' is defined in .*, and keeps its name here"),
+        (DOORWAY.replace("speed: Ann", "spe|ed: Ann"), "whether 'speed' in line 43 is the same is not known"),
+        (DOORWAY.replace("pose x:", "pose |x:"), "'x' is a slot of 'pose', and keeps its name here"),
+        (DOORWAY.replace("def build", "def bu|ild"), "'build' is called to make the simulation"),
+        (APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'), "where it is defined is not known"),
+        (APERTURE.replace('motor="busy:', 'motor="bu|sy:', 1), "'busy' is defined in .*, and keeps its name here"),
+        (APERTURE.replace('    answer = "', '    ans|wer = "', 1), "whether 'answer' in line 302 is the same is not known"),
+        (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'squeeze' in line 301 is the same is not known"),
+        (APERTURE.replace("    pass_doorway =", "    pass_|doorway ="), "whether 'pass_doorway' in line 440 is the same is not known"),
+        (APERTURE.replace("self.judged", "self.jud|ged", 1), "whether 'judged' in line 648 is the same is not known"),
+        (WHOLE.replace("print(self.seen)", "print(getattr(self, 'seen'))").replace("self.seen =", "self.se|en ="), "'seen' in line 15"),
+        (PAIRED.replace("def start", "def sta|rt"), "'start' is defined in .*, and keeps its name"),
+    ],
+)
+def test_a_name_is_not_renamed_if_it_is_not_known_which_places_are_the_same(ask: Asked, text: str, why: str) -> None:
+    assert "|" in text
+    with pytest.raises(LanguageError, match=why):
+        ask("rename", text, "zzz")
 
 
 INHERITED = ("traced", "now", "stop", "explain")

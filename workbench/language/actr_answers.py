@@ -299,7 +299,7 @@ def document(model: ModelText, at: int) -> Hover | None:
         return Hover(start=name.start, end=name.end, title=f"production {method.name}", text=_of_production(model, method))
     if is_variable(model, name):
         return Hover(start=name.start, end=name.end, title=f"?{name.text}", text=_of_variable(model, name.method, name.text))
-    if _is_modified(name):
+    if is_modified(name):
         return Hover(start=name.start, end=name.end, title=f"slot {name.text}", text=_of_slot(model, name.text))
     said = [f"{word.word}: {slots[name.text]}" for word, slots in _conditions(model, name) if name.keyword and slots.get(name.text)]
     if said:
@@ -338,14 +338,19 @@ def _of_slot(model: ModelText, slot: str, text: ChunkText | None = None) -> str:
 
 def _modified(model: ModelText, slot: str) -> dict[Name, str]:
     """Returns the names of a slot in calls such as `goal.modify(task="say")`, each with its value; an empty text for a computed one."""
-    named = [one for one in model.names if one.text == slot and _is_modified(one)]
+    named = [one for one in model.names if one.text == slot and is_modified(one)]
     values = {name: _CONSTANT.match(model.text, name.end) for name in named}
     return {name: found[2] or found[3] or "" if found else "" for name, found in values.items()}
 
 
-def _is_modified(name: Name) -> bool:
+def is_modified(name: Name) -> bool:
     """Returns whether a name is that of a slot in a call such as `goal.modify(task="say")`."""
     return name.keyword and name.called[-1:] == ("modify",)
+
+
+def giver(model: ModelText, text: ChunkText, slot: str) -> str:
+    """Returns what of the library gives a slot of a text its name; empty if nothing does."""
+    return next((word.word for word, slots in _answers(model, text) if slot in slots), "")
 
 
 def _of_value(model: ModelText, text: ChunkText, piece: Piece) -> str:
@@ -465,14 +470,14 @@ def find_uses(model: ModelText, at: int) -> Renaming | None:
     part = part_of(model, name)
     if part is not None:
         return Renaming(name=name.text, what="part", starts=_uses_of_part(model, part))
-    if _is_modified(name):
+    if is_modified(name):
         return Renaming(name=name.text, what="slot", starts=_uses_of_slot(model, name.text))
     return None
 
 
 def _uses_of_slot(model: ModelText, slot: str) -> list[int]:
     named = [one.start for text in model.texts for one in text.slots if one.text == slot]
-    given = [one.start for one in model.names if one.text == slot and _is_modified(one)]
+    given = [one.start for one in model.names if one.text == slot and is_modified(one)]
     read = [found.start(1) for found in re.finditer(rf"\w\[[\"']({re.escape(slot)})[\"']\]", model.text)]
     return sorted({*named, *given, *read})
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from workbench.language.answers import LanguageError
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText, Name
 from workbench.language.python_answers import PythonAnswers
@@ -28,32 +27,8 @@ class ClassMembers:
         self._explicit = explicit
         self._python = python
         self._path = path
-
-    def owner(self, name: Name) -> str:
-        """Returns the class of the text of which a name is a member; empty if it is a member of none."""
-        if name.before == ("self",) and name.agent:
-            return name.agent
-        found = self._kinds(name) if name.before else {self._python.owner(self._explicit, self._path, name.start)}
-        return next((kind for kind in found or () if kind in self._model.agents), "")
-
-    def places(self, owner: str, member: str) -> set[int]:
-        """Returns where a member of a class is defined and used, also by classes that inherit it or pass it on.
-
-        Raises:
-            LanguageError: If it is not known of a place whether it is the same member.
-        """
-        family = self._sharing(owner, member)
-        found = {start for agent in family for start in self._own(agent, member)}
-        for name in self._model.names:
-            if name.text != member or not name.before or name.start in found or (name.before == ("self",) and name.agent):
-                continue
-            kinds = self._kinds(name)
-            if kinds is None:
-                line = self._model.text.count("\n", 0, name.start) + 1
-                raise LanguageError(f"'{member}' cannot be renamed: whether '{member}' in line {line} is the same is not known")
-            if kinds & family:
-                found.add(name.start)
-        return found
+        self._known: dict[str, set[str] | None] = {}
+        """The classes from which each class inherits, as far as they were asked for."""
 
     def meaning(self, owner: str, member: str, new: str) -> str:
         """Returns what else another name means in the classes that have a member, in their bases and in their subclasses.
@@ -63,7 +38,7 @@ class ClassMembers:
             member: The name of the member.
             new: The other name.
         """
-        family = self._sharing(owner, member)
+        family = self.family(owner, member)
         related = [owner, *sorted(family - {owner}), *(base for agent in sorted(family) for base in self._above(agent))]
         for agent in dict.fromkeys(related):
             own = next(iter(self._own(agent, new)), None)
@@ -82,12 +57,59 @@ class ClassMembers:
                     return f"'{new}' is {kind} of {base} already"
         return ""
 
-    def _sharing(self, owner: str, member: str) -> set[str]:
+    def family(self, owner: str, member: str) -> set[str]:
         """Returns the classes that have a member in common: a class, those of its bases that have it, and all subclasses of these."""
-        having = [owner, *(base for base in self._above(owner) if any(True for _ in self._own(base, member)))]
+        having = [owner, *(base for base in self._above(owner) if self.has(base, member))]
         below = {agent for agent in self._model.agents if any(one in self._above(agent) for one in having)}
-        more = {base for agent in below for base in self._above(agent) if any(True for _ in self._own(base, member))}
+        more = {base for agent in below for base in self._above(agent) if self.has(base, member)}
         return {*having, *below, *more}
+
+    def has(self, agent: str, member: str) -> bool:
+        """Returns whether a class itself defines or uses a member."""
+        return any(True for _ in self._own(agent, member))
+
+    def library(self, owner: str, member: str) -> str:
+        """Returns what a member replaces of a class of another text, such as "a method of ACTR"; empty if it is the text's own."""
+        for agent in sorted(self.family(owner, member)):
+            for base in self._model.agents[agent].bases:
+                kind = "" if base in self._model.agents else self._python.attribute(self._explicit, self._path, base, member)
+                if kind:
+                    return f"{kind} of {base}"
+        return ""
+
+    def above(self, agent: str) -> set[str] | None:
+        """Returns all classes from which a class inherits, those of other texts as `module:name`; None if they are not known."""
+        if agent not in self._known:
+            self._known[agent] = self._find_above(agent)
+        return self._known[agent]
+
+    def _find_above(self, agent: str) -> set[str] | None:
+        found = set(self._above(agent))
+        for one in (agent, *self._above(agent)):
+            for base in self._model.agents[one].bases:
+                if base in self._model.agents:
+                    continue
+                more = self._python.ancestors(self._python.kinds_of(self._explicit, self._path, base))
+                if more is None:
+                    return None
+                found |= more
+        return found | {"builtins:object"}
+
+    def above_all(self, family: set[str]) -> set[str] | None:
+        """Returns all classes from which some classes inherit; None if they are not known."""
+        found: set[str] = set()
+        for agent in family:
+            more = self.above(agent)
+            if more is None:
+                return None
+            found |= more
+        return found
+
+    def kinds(self, name: Name) -> set[str] | None:
+        """Returns the classes of what stands before a name, those of other texts as `module:name`; None if they are not known."""
+        if name.before == ("self",) and name.agent:
+            return {name.agent}
+        return self._python.kinds(self._explicit, self._path, name.start - 1)
 
     def _above(self, agent: str) -> list[str]:
         """Returns the classes of the text from which a class inherits."""
@@ -111,10 +133,3 @@ class ClassMembers:
             begins = not text[text.rfind("\n", 0, name.start) + 1 : name.start].strip()
             if name.before == ("self",) or (not name.method and not name.before and begins and _ASSIGNED.match(text, name.end)):
                 yield name.start
-
-    def _kinds(self, name: Name) -> set[str] | None:
-        """Returns the classes of what stands before a name, those of other texts as empty; None if they are not known."""
-        part = self._model.parts_of(name.agent).get(name.before[-1]) if name.before[:-1] in ((), ("self",), ("self", "parent")) else None
-        if part is not None and part.kind in self._model.agents:
-            return {part.kind}
-        return self._python.kinds(self._explicit, self._path, name.start - 1)

@@ -1,13 +1,14 @@
 """Writes out what ACT-R adds to a model's text, so that tools for plain Python understand it.
 
-Inside a production, the agent's parts, the agent itself (`self`) and the pattern's variables are known by name. Each gets an assignment in
-a line of its own before the body, and all other lines keep their text.
+Inside a production, the agent's parts, the agent itself (`self`) and the pattern's variables are known by name. They get assignments in a
+line of their own before the body. A class that is a part gets a line that annotates `parent`. All other lines keep their text.
 """
 
 from __future__ import annotations
 
 import keyword
 from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
 
 from workbench.language.model_text import Method, ModelText
 
@@ -22,10 +23,13 @@ class ExplicitText:
     def __init__(self, model: ModelText) -> None:
         bodies = {method.body[0]: method for agent in model.agents.values() for method in agent.methods.values() if method.body}
         bodies = {line: method for line, method in bodies.items() if method.sees_parts}
-        self._inserted = sorted(bodies)
+        parents = dict(_parents(model))
+        self._inserted = sorted([*bodies, *parents])
         """The lines of the model's text, counted from 1, before which a line was inserted."""
         lines: list[str] = []
         for number, line in enumerate(model.text.split("\n"), 1):
+            if number in parents:
+                lines.append(parents[number])
             if number in bodies:
                 lines.append(_assignments(model, bodies[number]))
             lines.append(line)
@@ -45,6 +49,21 @@ class ExplicitText:
             return None
         own = line - before
         return self._starts[own - 1] + column if own <= len(self._starts) else None
+
+
+def _parents(model: ModelText) -> Iterator[tuple[int, str]]:
+    """Yields for each class that is a part the line before its first method, and what it says of `parent`."""
+    lines = model.text.split("\n")
+    for agent in model.agents.values():
+        holders = " | ".join(one.name for one in model.holders(agent.name))
+        if holders and agent.methods:
+            method = min(agent.methods.values(), key=lambda one: one.start)
+            number = model.text.count("\n", 0, method.start) + 1
+            while number > 1 and lines[number - 2].lstrip().startswith("@"):
+                number -= 1
+            indented = lines[number - 1][: method.column]
+            if not indented.strip():
+                yield number, f'{indented}parent: "{holders}"'
 
 
 def _assignments(model: ModelText, method: Method) -> str:

@@ -207,6 +207,27 @@ class ModelText:
             self._take(number, token)
         self.texts = [one for one in self.texts if self._describes(one)]
 
+    @cached_property
+    def other_texts(self) -> list[tuple[int, int]]:
+        """Where the texts that stand in a statement begin and end: all strings but docstrings."""
+        tokens = [
+            token for number, token in enumerate(self._tokens) if not (token.first and self._text(number + 1)[:1] in ("\n", "\r", ""))
+        ]
+        return [(token.start, token.end) for token in tokens if token.kind == "text"]
+
+    def holders(self, agent: str) -> list[Agent]:
+        """Returns the classes that have a class, a class that inherits from it, or one from which it inherits, as a part."""
+        found = self.agents.get(agent)
+        kinds = {one.name for one in self.agents.values() if found is not None and agent in self._above(one.name)}
+        return [one for one in self.agents.values() if any(part.kind in kinds for part in one.parts.values())]
+
+    def _above(self, agent: str) -> list[str]:
+        """Returns a class and those of the text from which it inherits."""
+        found = [agent]
+        for one in found:
+            found += [base for base in self.agents[one].bases if base in self.agents and base not in found]
+        return found
+
     # -- questions
 
     def text_at(self, at: int) -> ChunkText | None:

@@ -6,6 +6,8 @@ import builtins
 import re
 import sys
 from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -67,8 +69,19 @@ class PythonAnswers:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._environment = _Environment()
+        self._scripts: dict[tuple[str, str], jedi.Script] = {}
+
+    def forget(self) -> None:
+        """Forgets what was read: the files of the folder may have changed."""
+        self._scripts.clear()
 
     def _script(self, text: str, path: str) -> jedi.Script:
+        if (text, path) not in self._scripts:
+            self._scripts.clear()  # jedi changes what it has read of a file when it reads another text of it
+            self._scripts[text, path] = self._new_script(text, path)
+        return self._scripts[text, path]
+
+    def _new_script(self, text: str, path: str) -> jedi.Script:
         where = self._folder / path
         sources = list(dict.fromkeys([str(where.parent), str(self._folder), *sys.path]))
         project = jedi.Project(self._folder, sys_path=sources, smart_sys_path=False)
@@ -137,32 +150,39 @@ class PythonAnswers:
         found = script.goto(line, 0, follow_imports=True)
         return next((one.module_name for one in found if one.module_path != self._folder / path), "")
 
-    def owner(self, explicit: ExplicitText, path: str, at: int) -> str:
-        """Returns the class in whose body the name at a position is defined, after those around it; empty if it is defined in none."""
-        found = self._script(explicit.text, path).goto(*explicit.place(at))
-        owners = [owner for one in found if one.module_path == self._folder / path and (owner := one.parent()) and owner.type == "class"]
-        return (owners[0].full_name or "").removeprefix(f"{owners[0].module_name}.") if owners else ""
-
     def kinds(self, explicit: ExplicitText, path: str, at: int) -> set[str] | None:
-        """Returns the classes of the expression that ends at a position, those of other texts as empty; None if they are not known."""
-        found = self._script(explicit.text, path).infer(*explicit.place(at))
+        """Returns the classes of the expression that ends at a position, those of others as `module:name`; None if they are not known."""
+        return self._kinds(self._script(explicit.text, path).infer(*explicit.place(at)), path)
+
+    def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:
+        """Returns the classes of an expression at the end of a text, as `kinds` does."""
+        code = f"{explicit.text}\n\n{expression}"
+        return self._kinds(self._script(code, path).infer(code.count("\n") + 1, len(expression)), path)
+
+    def _kinds(self, found: list[Any], path: str) -> set[str] | None:
         own = self._folder / path
-        kinds = {(one.full_name or "").removeprefix(f"{one.module_name}.") if one.module_path == own else "" for one in found}
-        return kinds or None
+        names = [(one, (one.full_name or "").removeprefix(one.module_name).removeprefix(".")) for one in found]
+        return {name if one.module_path == own else f"{one.module_name}:{name}" for one, name in names} or None
+
+    @staticmethod
+    def ancestors(kinds: set[str] | None) -> set[str] | None:
+        """Returns classes of other texts, as `kinds` names them, and all from which these inherit; None if they are not known."""
+        found: set[str] = set()
+        for kind in kinds or {""}:
+            module, _, name = kind.partition(":")
+            # The library itself may be imported; its classes are those that a text can inherit from.
+            source = import_module(module) if module.startswith("actr3d.") and find_spec(module) else sys.modules.get(module)
+            one = getattr(source, name, None)
+            if not isinstance(one, type):
+                return None
+            found |= {f"{base.__module__}:{base.__qualname__}" for base in one.__mro__}
+        return found
 
     def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
         """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
         code = f"{explicit.text}\n\n{owner}()."
         found = self._script(f"{code}{name}", path).goto(code.count("\n") + 1, len(owner) + len("()."))
         return "" if not found else "a method" if found[0].type == "function" else "an attribute"
-
-    def references(self, explicit: ExplicitText, path: str, at: int) -> list[int]:
-        """Returns the positions of all uses of the name at a position in its text."""
-        line, column = explicit.place(at)
-        found = self._script(explicit.text, path).get_references(line, column, scope="file", include_builtins=False)
-        own = [one for one in found if one.module_path == self._folder / path]
-        places = (explicit.position(one.line, one.column) for one in own if one.line is not None)
-        return sorted({place for place in places if place is not None})
 
 
 class PythonExpressions:

@@ -14,10 +14,10 @@ from ruff import find_ruff_bin
 
 from workbench.language import actr_answers
 from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, LanguageError, Renaming
-from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import PythonAnswers
+from workbench.language.same_words import SameWords
 
 FORMAT_TIME = 5.0
 """Maximum time that formatting may take [s]."""
@@ -54,6 +54,7 @@ class Assistant:
         Raises:
             LanguageError: If it cannot be given.
         """
+        self._python.forget()
         if question.ask == "format":
             return {"text": formatted(question.text)}
         units = CodeUnits(question.text)
@@ -114,7 +115,8 @@ class Assistant:
         return self._python.define(ExplicitText(model), path, at)
 
     def _rename(self, model: ModelText, path: str, at: int, new: str) -> Renaming:
-        found = actr_answers.find_uses(model, at) or self._find_uses(model, path, at)
+        words = SameWords(model, self._python, path)
+        found = words.uses(at)
         allowed = re.fullmatch(r"[\w.]+", new) if found.what == "slot" else new.isidentifier() and not keyword.iskeyword(new)
         if not new:  # the page asks what will be renamed
             return found
@@ -124,10 +126,10 @@ class Assistant:
             if self._is_taken(model, found, at, new):
                 raise LanguageError(f"there is a {found.what} '{new}' already")
             if found.what != "slot":
-                self._check_meaning(model, path, found, at, new)
+                self._check_meaning(words, path, found, at, new)
         return found
 
-    def _check_meaning(self, model: ModelText, path: str, found: Renaming, at: int, new: str) -> None:
+    def _check_meaning(self, words: SameWords, path: str, found: Renaming, at: int, new: str) -> None:
         """Checks that a new name in the code hides nothing, and that no other name means the same once it is written.
 
         Raises:
@@ -135,41 +137,22 @@ class Assistant:
         """
         if hasattr(builtins, new):
             raise LanguageError(f"'{new}' is a name of Python itself")
-        original = ExplicitText(model)
-        module = self._python.origin(original, path, new)
+        module = self._python.origin(words.explicit, path, new)
         if module:
             raise LanguageError(f"'{new}' is imported from {module} already")
-        members = ClassMembers(model, original, self._python, path)
-        name = None if found.what == "variable" else model.name_at(at)
-        part = None if name is None else actr_answers.part_of(model, name)
-        owner = part.agent if part is not None else members.owner(name) if name is not None else ""
-        taken = members.meaning(owner, found.name, new) if owner else ""
+        owner = words.owner(at)
+        taken = words.members.meaning(owner, found.name, new) if owner else ""
         if taken:
             raise LanguageError(taken)
-        text, starts = _renamed(model.text, found, new)
-        explicit = ExplicitText(ModelText(text))
-        here = max((start for old, start in zip(found.starts, starts, strict=True) if old <= at), default=starts[0])
-        same = self._places(ModelText(text), explicit, path, here) if found.what == "name" else self._uses(explicit, path, here, text, new)
-        for start in starts:
-            if start not in same and found.what != "name":  # each production has its own part or variable
-                same |= self._uses(explicit, path, start, text, new)
-        # Texts of patterns and chunks are no code: there, parts and variables have no uses that Python knows.
-        different = same.difference(starts) or (set(starts) - same if found.what == "name" else None)
+        if not words.mentions(new):
+            return
+        text, starts = _renamed(words.model.text, found, new)
+        here = max((start for old, start in zip(found.starts, starts, strict=True) if old <= at + 1), default=starts[0])
+        same, _ = SameWords(ModelText(text), self._python, path).places(new, here)
+        different = same ^ set(starts)
         if different:
             line = text.count("\n", 0, min(different)) + 1
             raise LanguageError(f"'{new}' already has a meaning in line {line}")
-
-    def _places(self, model: ModelText, explicit: ExplicitText, path: str, at: int) -> set[int]:
-        """Returns all places of the name at a position: those that Python knows, and for a member of a class those of the same member."""
-        name = model.name_at(at)
-        assert name is not None
-        members = ClassMembers(model, explicit, self._python, path)
-        owner = members.owner(name)
-        places = members.places(owner, name.text) if owner else set[int]()
-        return places.union(*(self._uses(explicit, path, start, model.text, name.text) for start in (at, *places)))
-
-    def _uses(self, explicit: ExplicitText, path: str, at: int, text: str, name: str) -> set[int]:
-        return {start for start in self._python.references(explicit, path, at) if text.startswith(name, start)}
 
     @staticmethod
     def _is_taken(model: ModelText, found: Renaming, at: int, new: str) -> bool:
@@ -181,22 +164,6 @@ class Assistant:
             return any(slot.text == new for one in model.texts for slot in one.slots)
         names = {piece.text for piece in model.variables_of(text.method)} if found.what == "variable" else set[str]()
         return new in names or new == "self" or new in model.parts_of(text.agent)
-
-    def _find_uses(self, model: ModelText, path: str, at: int) -> Renaming:
-        name = model.name_at(at)
-        if name is None or model.text_at(at) is not None:
-            raise LanguageError("there is no name here that can be renamed")
-        method = model.method(name.method)
-        if name.text == "self" and not name.before and method is not None and method.sees_parts:
-            raise LanguageError("'self' is the agent in every production, and keeps its name")
-        explicit = ExplicitText(model)
-        defined = self._python.define(explicit, path, at)
-        if defined is not None and defined.at is None:
-            raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
-        starts = sorted(self._places(model, explicit, path, at))
-        if not starts:
-            raise LanguageError(f"'{name.text}' cannot be renamed: where it is defined is not known")
-        return Renaming(name=name.text, what="name", starts=starts)
 
 
 class CodeUnits:

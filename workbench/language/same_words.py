@@ -1,0 +1,308 @@
+"""Finds all words of a text that mean the same as one of them, and those of which that is not known."""
+
+from __future__ import annotations
+
+import builtins
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from actr3d.actr.lint.slot_names import GIVERS, READERS
+from workbench.language import actr_answers
+from workbench.language.answers import LanguageError, Renaming
+from workbench.language.class_members import ClassMembers
+from workbench.language.explicit_names import ExplicitText
+from workbench.language.model_text import ChunkText, Method, ModelText, Name, Piece, SlotName
+from workbench.language.python_answers import PythonAnswers
+from workbench.language.scopes import Scope, Scopes
+
+_MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["']\s*:"""
+"""A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}."""
+_SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
+"""A slot and its value in a string."""
+_VALUE = r"""["']({0})["']"""
+_BUFFER = "actr3d.actr.kernel.buffer:Buffer"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meaning:
+    """What a word means."""
+
+    what: str
+    """`variable` of a production, `slot`, `local` of a scope, or `member` of a class."""
+    owners: frozenset[object] = frozenset()
+    """The production, the scope, or the classes that an object may have, those of other texts as `module:name`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WordPlace:
+    """One place of a word: a name in the code, or a slot or a variable in a text of a chunk or pattern."""
+
+    start: int
+    name: Name | None
+    meaning: Meaning | None
+    """None if it is not known."""
+
+
+_LIBRARY = Meaning(what="local", owners=frozenset({"library"}))
+
+
+class SameWords:
+    """The words of a text, and what they mean.
+
+    Args:
+        model: The text.
+        python: Answers questions about plain Python.
+        path: The file of the text.
+    """
+
+    def __init__(self, model: ModelText, python: PythonAnswers, path: str) -> None:
+        self.model = model
+        self.explicit = ExplicitText(model)
+        self.members = ClassMembers(model, self.explicit, python, path)
+        self._python = python
+        self._path = path
+        self._kinds_of_parts: dict[str, set[str] | None] = {}
+
+    @cached_property
+    def _scopes(self) -> Scopes:
+        return Scopes(self.explicit.text)
+
+    def uses(self, at: int) -> Renaming:
+        """Returns all places of what the word at a position means.
+
+        Raises:
+            LanguageError: If there is none, if it belongs to another text, or if it is not known of a place whether it is the same.
+        """
+        text, name = self.model.text_at(at), self.model.name_at(at)
+        if text is not None:
+            found = next((one for one in (*text.slots, *self._variables(text)) if one.start - 1 <= at <= one.end), None)
+            if found is None:
+                raise LanguageError("there is no name here that can be renamed")
+            word, start = found.text, found.start
+        elif name is not None:
+            word, start = name.text, name.start
+            self._check_name(name)
+        else:
+            raise LanguageError("there is no name here that can be renamed")
+        target = next(one for one in self._words(word) if one.start == start)
+        meaning = target.meaning
+        unknown = f"'{word}' cannot be renamed: where it is defined is not known"
+        if meaning is None or meaning == _LIBRARY:
+            raise LanguageError(unknown)
+        if meaning.what == "slot":
+            self._check_slot(word)
+        what = "name" if meaning.what in ("local", "member") else meaning.what
+        if meaning.what == "member":
+            own = sorted(str(one) for one in meaning.owners if one in self.model.agents)
+            if not own:
+                kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "")
+                raise LanguageError(f"'{word}' is defined in {kind.replace(':', '.')}, and keeps its name here" if kind else unknown)
+            of_library = self.members.library(own[0], word)
+            if of_library:
+                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
+            if self._is_part(word, meaning):
+                what = "part"
+        starts, unproven = self.places(word, start)
+        if unproven:
+            line = self.model.text.count("\n", 0, min(unproven)) + 1
+            raise LanguageError(f"'{word}' cannot be renamed: whether '{word}' in line {line} is the same is not known")
+        if meaning.what == "member" and what != "part" and not any(self._defines(place) for place in starts):
+            raise LanguageError(unknown)
+        return Renaming(name=word, what=what, starts=sorted(starts))
+
+    def places(self, word: str, start: int) -> tuple[set[int], set[int]]:
+        """Returns the places of what a word means at one of them, and those of which it is not known whether they are the same."""
+        words = list(self._words(word))
+        target = next(one for one in words if one.start == start)
+        found = {one.start: self._is_same(word, target, one) for one in words}
+        same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
+        assert target.meaning is not None
+        strings = self._in_strings(_MEMBER if target.meaning.what == "member" else _SLOT if target.meaning.what == "slot" else "", word)
+        if self._is_part(word, target.meaning):  # SGOMS names planning units by values: planning_unit:squeeze
+            values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
+            strings |= {*values, *self._in_strings(_VALUE, word)}
+        return same, unproven | (strings - found.keys())
+
+    def _is_part(self, word: str, meaning: Meaning) -> bool:
+        own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
+        return any(word in self.model.agents[one].parts for agent in own for one in self.members.family(agent, word))
+
+    def _in_strings(self, pattern: str, word: str) -> set[int]:
+        """Returns where a word stands in strings that are no known texts of chunks or patterns, in the way that a pattern describes."""
+        if not pattern:
+            return set()
+        places = {one.start(one.lastindex or 0) for one in re.finditer(pattern.format(re.escape(word)), self.model.text)}
+        known = [(one.start, one.end) for one in self.model.texts]
+        return {
+            at
+            for at in places
+            if any(begin <= at < end for begin, end in self.model.other_texts) and not any(begin <= at < end for begin, end in known)
+        }
+
+    def owner(self, at: int) -> str:
+        """Returns the class of the text of which the word at a position is a member; empty if it is a member of none."""
+        name = self.model.name_at(at)
+        found = None if name is None or self.model.text_at(at) is not None else self._of_name(name)
+        return "" if found is None or found.what != "member" else min(str(one) for one in found.owners if one in self.model.agents)
+
+    def mentions(self, word: str) -> bool:
+        """Returns whether a word is anywhere in the text."""
+        return any(True for _ in self._words(word))
+
+    # -- what words mean
+
+    def _words(self, word: str) -> Iterator[WordPlace]:
+        """Yields all words of a text."""
+        for text in self.model.texts:
+            for slot in text.slots:
+                if slot.text == word:
+                    yield WordPlace(start=slot.start, name=None, meaning=self._of_slot(text, slot))
+            for piece in self._variables(text):
+                if piece.text == word:
+                    yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
+        for found in re.finditer(rf"\w\[[\"']({re.escape(word)})[\"']\]", self.model.text):
+            yield WordPlace(start=found.start(1), name=None, meaning=Meaning(what="slot"))
+        for name in self.model.names:
+            if name.text == word:
+                yield WordPlace(start=name.start, name=name, meaning=self._of_name(name))
+
+    @staticmethod
+    def _variables(text: ChunkText) -> list[Piece]:
+        return [piece for piece in text.pieces if piece.is_variable]
+
+    def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
+        """Returns the meaning of a slot in a text: in a pattern of a module, it is an attribute."""
+        part = self.model.parts_of(text.agent).get(text.part) if text.kind == "pattern" and slot.text.isidentifier() else None
+        if part is None or part.kind == "Buffer":
+            return Meaning(what="slot")
+        own = part.kind in self.model.agents
+        expression = f"{part.agent}.{part.name}"
+        if expression not in self._kinds_of_parts:
+            found = {part.kind} if own else self._python.kinds_of(self.explicit, self._path, expression)
+            self._kinds_of_parts[expression] = found
+        kinds = self._kinds_of_parts[expression]
+        above = self.members.above(part.kind) if own else self._python.ancestors(kinds)
+        if kinds is None or above is None:
+            return None
+        return Meaning(what="slot") if _BUFFER in above else Meaning(what="member", owners=frozenset(kinds))
+
+    def _of_name(self, name: Name) -> Meaning | None:
+        place = self.explicit.place(name.start)
+        if self._scopes.is_import_path(place):
+            return _LIBRARY
+        if actr_answers.is_variable(self.model, name):
+            return Meaning(what="variable", owners=frozenset({name.method}))
+        part = actr_answers.part_of(self.model, name)
+        if part is not None:
+            return Meaning(what="member", owners=frozenset({part.agent}))
+        if name.before:
+            kinds = self.members.kinds(name)
+            return None if kinds is None else Meaning(what="member", owners=frozenset(kinds))
+        if name.keyword and name.called:
+            return self._of_argument(name)
+        scope, method = self._scopes.of(place), self.model.method(name.method)
+        if method is not None and method.sees_parts and method.start != name.start:
+            return self._of_name_in_production(name, method, scope)
+        if scope is None:
+            return _LIBRARY
+        kind, owner, _ = scope
+        return Meaning(what="member", owners=frozenset({owner})) if kind == "class" else Meaning(what="local", owners=frozenset({scope}))
+
+    def _of_name_in_production(self, name: Name, method: Method, scope: Scope | None) -> Meaning | None:
+        """Returns the meaning of a name in a production, which sees the attributes of its agent."""
+        if scope is None or scope[0] == "module":
+            holders = {one.name for one in self.model.lineage(name.agent) if self._binds(one.name, name.text)}
+            if holders:
+                return Meaning(what="member", owners=frozenset(holders))
+        if scope is None:
+            return _LIBRARY if hasattr(builtins, name.text) else None
+        if scope[:2] == ("function", method.name) and name.text in method.parameters:
+            return None  # a part that the text does not define
+        return Meaning(what="local", owners=frozenset({scope}))
+
+    def _binds(self, agent: str, word: str) -> bool:
+        """Returns whether the body of a class defines a name."""
+        places = (self.explicit.place(one.start) for one in self.model.names if one.text == word and one.agent == agent and not one.before)
+        return any((self._scopes.of(place) or ("",))[:2] == ("class", agent) for place in places)
+
+    def _of_argument(self, name: Name) -> Meaning | None:
+        """Returns the meaning of `width` in `look(width=1)`: a parameter of the function, a field of the class, or a slot."""
+        if actr_answers.is_modified(name):
+            return Meaning(what="slot")
+        defined = self._python.define(self.explicit, self._path, name.start)
+        if defined is not None and defined.at is None:
+            return _LIBRARY
+        other = None if defined is None else self.model.name_at(defined.at or 0)
+        if other is not None and other.text == name.text and not (other.keyword and other.called):
+            return self._of_name(other)
+        before = [one for one in self.model.names if one.end <= name.start and (*one.before, one.text) == name.called]
+        kinds = self.members.kinds(before[-1]) if before and before[-1].before else None
+        is_method = bool(kinds) and all(":" in kind and not kind.endswith(":") for kind in kinds or ())
+        return _LIBRARY if is_method else None  # a method of an object of the library knows no names of the text
+
+    # -- which are the same
+
+    def _is_same(self, word: str, target: WordPlace, other: WordPlace) -> bool | None:
+        """Returns whether two places of a word mean the same; None if it is not known."""
+        one, two = target.meaning, other.meaning
+        assert one is not None
+        if other.start == target.start and one.what != "member":
+            return True
+        if two is None:
+            return self._may_be(word, target, other)
+        asked = other.name is not None and other.name.keyword and other.name.called[-1:] and other.name.called[-1] in (*GIVERS, *READERS)
+        if one.what == "slot" and asked and two.what != "slot":
+            return None
+        if {one.what, two.what} == {"slot", "member"}:
+            features = (one.owners | two.owners) & {agent.name for agent in self.model.agents.values() if "Feature" in agent.bases}
+            return None if features else False
+        if one.what != two.what:
+            return False
+        if one.what != "member":
+            return one.owners == two.owners
+        owner = min(str(kind) for kind in one.owners if kind in self.model.agents)
+        family = self.members.family(owner, word)
+        mixed = any(kind in self.model.agents and kind not in family and self.members.has(str(kind), word) for kind in two.owners)
+        if two.owners & family:
+            return None if mixed else True
+        above = self.members.above_all(family)
+        unknown = above is None and any(":" in str(kind) and not str(kind).startswith("builtins:") for kind in two.owners)
+        return None if unknown or two.owners & (above or set()) else False
+
+    def _may_be(self, word: str, target: WordPlace, other: WordPlace) -> bool | None:
+        """Returns False if a word whose meaning is not known cannot mean the same as another; None if it can."""
+        one, name = target.meaning, other.name
+        assert one is not None
+        if name is None:  # of a part whose class is not known
+            return None if one.what in ("slot", "member") else False
+        if not name.called or not name.keyword:
+            return None if one.what == "member" else False
+        if one.what == "local":
+            function = self._scopes.function_with_parameter(self.explicit.place(target.start))
+            return None if function in (name.called[-1], "__init__", "") else False
+        return False if one.what == "variable" else None
+
+    # -- what may not be renamed
+
+    def _check_name(self, name: Name) -> None:
+        method = self.model.method(name.method)
+        if name.text == "self" and not name.before and method is not None and method.sees_parts:
+            raise LanguageError("'self' is the agent in every production, and keeps its name")
+        if name.text == "build" and (self._scopes.of(self.explicit.place(name.start)) or ("",))[0] == "module":
+            raise LanguageError("'build' is called to make the simulation, and keeps its name")
+        acts = actr_answers.is_variable(self.model, name) or actr_answers.part_of(self.model, name) or actr_answers.is_modified(name)
+        defined = None if acts else self._python.define(self.explicit, self._path, name.start)
+        if defined is not None and defined.at is None:
+            raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
+
+    def _check_slot(self, slot: str) -> None:
+        for text in self.model.texts:
+            if any(one.text == slot for one in text.slots):
+                word = actr_answers.giver(self.model, text, slot)
+                if word:
+                    raise LanguageError(f"'{slot}' is a slot of '{word}', and keeps its name here")
+
+    def _defines(self, start: int) -> bool:
+        return self._scopes.is_definition(self.explicit.place(start))

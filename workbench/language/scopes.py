@@ -1,0 +1,162 @@
+"""Finds the scope of each plain name of a Python text, by Python's own rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, cast
+
+from parso.grammar import load_grammar
+
+Scope = tuple[str, str, tuple[int, int]]
+"""The kind of a scope, its name, and where it begins."""
+_COMPREHENSIONS = ("comp_for", "sync_comp_for")
+_FUNCTIONS = ("funcdef", "lambdef")
+
+
+class Scopes:
+    """The scopes of a text: the module, its classes, functions and comprehensions.
+
+    Args:
+        code: The text.
+    """
+
+    def __init__(self, code: str) -> None:
+        self._module: Any = cast("Any", load_grammar()).parse(code)
+        self._leaves: dict[tuple[int, int], Any] = {leaf.start_pos: leaf for leaf in _names(self._module)}
+        self._bound: dict[int, dict[str, Any]] = {}
+        """For each scope, its names, and where each is bound first."""
+        self._passed: dict[int, dict[str, bool]] = {}
+        """For each function, the names of `global` (True) and `nonlocal` (False) in it."""
+        for leaf in self._leaves.values():
+            if leaf.parent.type in ("global_stmt", "nonlocal_stmt"):
+                self._passed.setdefault(id(self._around(leaf)[0]), {})[leaf.value] = leaf.parent.type == "global_stmt"
+        for leaf in self._leaves.values():
+            if _is_plain(leaf) and not _is_import_path(leaf) and leaf.is_definition():
+                self._bind(leaf)
+
+    def of(self, place: tuple[int, int]) -> Scope | None:
+        """Returns the scope of the plain name at a line and column; None if the text does not define it.
+
+        Returns:
+            Its kind (`module`, `class` or `function`, which comprehensions are, too), its name, with those of the classes around it for a
+            class, and where it begins.
+        """
+        leaf = self._leaves.get(place)
+        scope = None if leaf is None or _is_import_path(leaf) else self._scope(leaf)
+        if scope is None:
+            return None
+        if scope.type == "classdef":
+            return "class", ".".join(_classes(scope)), scope.start_pos
+        name = scope.name.value if scope.type == "funcdef" else ""
+        return ("module" if scope is self._module else "function"), name, scope.start_pos
+
+    def is_definition(self, place: tuple[int, int]) -> bool:
+        """Returns whether a value is given to the name at a line and column."""
+        leaf = self._leaves.get(place)
+        return leaf is not None and bool(leaf.is_definition())
+
+    def function_with_parameter(self, place: tuple[int, int]) -> str | None:
+        """Returns the name of the function of which the plain name at a line and column is a parameter, empty for a `lambda`; else None."""
+        leaf = self._leaves.get(place)
+        scope = None if leaf is None else self._scope(leaf)
+        if leaf is None or scope is None or self._bound[id(scope)][leaf.value].parent.type != "param":
+            return None
+        return str(scope.name.value) if scope.type == "funcdef" else ""
+
+    def is_import_path(self, place: tuple[int, int]) -> bool:
+        """Returns whether the name at a line and column is that of another text: of a module, or of what is imported from it."""
+        leaf = self._leaves.get(place)
+        return leaf is not None and _is_import_path(leaf)
+
+    def _bind(self, leaf: Any) -> None:
+        scopes = self._around(leaf)
+        definition = leaf.get_definition()
+        if definition is not None and definition.type == "namedexpr_test":
+            scopes = [scope for scope in scopes if scope.type not in (*_COMPREHENSIONS, "classdef")]
+        passed = self._passed.get(id(scopes[0]), {}).get(leaf.value)
+        if passed is False:  # the function around it binds the name itself
+            return
+        scope = self._module if passed else scopes[0]
+        self._bound.setdefault(id(scope), {}).setdefault(leaf.value, leaf)
+
+    def _scope(self, leaf: Any) -> Any:
+        """Returns the scope that a name belongs to; None if no scope binds it."""
+        scopes = self._around(leaf)
+        for number, scope in enumerate(scopes):
+            passed = self._passed.get(id(scope), {}).get(leaf.value)
+            if passed:
+                return self._module
+            bound = self._bound.get(id(scope), {}).get(leaf.value)
+            if bound is None or passed is False:
+                continue
+            if scope.type == "classdef" and (number > 0 or leaf.start_pos < bound.start_pos or _is_value(leaf, bound)):
+                continue  # a class passes its names on to no function, and until it binds a name, that of a scope around it counts
+            return scope
+        return None
+
+    def _around(self, leaf: Any) -> list[Any]:
+        """Returns the scopes around a name, nearest first."""
+        found: list[Any] = []
+        child, node = leaf, leaf.parent
+        while node is not None:
+            if node.type in _FUNCTIONS:
+                if _is_inside_function(node, child, leaf):
+                    found.append(node)
+            elif node.type == "classdef":
+                if child is node.children[-1]:
+                    found.append(node)
+            elif node.children[-1].type in _COMPREHENSIONS and node.type not in _COMPREHENSIONS:
+                comprehension = node.children[-1]
+                first = comprehension.children[-1] if comprehension.type == "comp_for" else comprehension
+                iterable = first.children[3]
+                if not (iterable.start_pos <= leaf.start_pos < iterable.end_pos):
+                    found.append(comprehension)
+            child, node = node, node.parent
+        return [*found, self._module]
+
+
+def _names(node: Any) -> Iterator[Any]:
+    """Yields the names of a tree."""
+    if node.type == "name":
+        yield node
+    for child in getattr(node, "children", ()):
+        yield from _names(child)
+
+
+def _classes(node: Any) -> list[str]:
+    """Returns the names of the classes around a node, outermost first, and its own."""
+    own = [str(node.name.value)] if node.type == "classdef" else []
+    return own if node.parent is None else [*_classes(node.parent), *own]
+
+
+def _is_plain(leaf: Any) -> bool:
+    """Returns whether a name is neither an attribute nor that of an argument."""
+    before, parent = leaf.get_previous_leaf(), leaf.parent
+    is_argument = parent.type == "argument" and parent.children[0] is leaf and parent.children[1].value == "="
+    return (
+        not (before is not None and before.type == "operator" and before.value == "." and parent.type != "import_from") and not is_argument
+    )
+
+
+def _is_import_path(leaf: Any) -> bool:
+    """Returns whether a name in an import binds nothing here."""
+    node = leaf.parent
+    while node.type in ("dotted_name", "dotted_as_name", "dotted_as_names", "import_as_name", "import_as_names"):
+        node = node.parent
+    return node.type in ("import_name", "import_from") and leaf not in node.get_defined_names()
+
+
+def _is_inside_function(function: Any, child: Any, leaf: Any) -> bool:
+    """Returns whether a name belongs inside of a function, in whose child it stands: not its own name, defaults or annotations."""
+    if child is function.children[-1]:
+        return True
+    node = leaf.parent
+    while node is not function and node.type != "param":
+        node = node.parent
+    return node.type == "param" and node.name is leaf
+
+
+def _is_value(leaf: Any, bound: Any) -> bool:
+    """Returns whether a name is read by the statement that binds it first."""
+    statement = bound.get_definition()
+    return leaf is not bound and statement.type == "expr_stmt" and statement.start_pos <= leaf.start_pos < statement.end_pos
