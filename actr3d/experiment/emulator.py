@@ -28,6 +28,8 @@ DESCENTS = 15
 """The maximum number of steps of this search."""
 ZOOM, ZOOMS = 10, 5
 """The number of parts into which the step with the bound of an interval is divided, and how often values are compared."""
+ROUNDING = 1e-9
+"""By how large a part of itself a sum of squares may differ if it is calculated again, together with other ones."""
 LEAST = 1e-10
 """The least sum of squares that differs from 0, as a part of the greatest squared difference of any mean of a candidate."""
 
@@ -71,21 +73,27 @@ class Emulator:
         self._most = max(float(squares[best]), LEAST)
         if (free := len(data) - self._axes) > 0:
             self._most *= 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
-        self.is_confirmed = bool(np.any(self._squares(points) <= self._most))
+        self._most *= 1 + ROUNDING
+        differences = means - data
+        self._good = points[np.einsum("nk,nk->n", differences, differences) <= self._most]
+        self.is_confirmed = len(points) > self._axes and bool(np.any(self._squares(points) <= self._most))
         """Whether a candidate fits about as well as the minimum, but for the noise of its means; otherwise, the minimum is a guess."""
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
         """Returns the bounds of the 95 % interval of a parameter; None where the range ends first or the model fails, and while the
         minimum is a guess.
 
-        If values that fit are apart from each other, it contains what is between them.
+        It contains all candidates that fit, also where the means jump and predictions do not follow. If values that fit are apart from
+        each other, it contains what is between them.
 
         With few more means than parameters, an interval is wide, because the residual variance is uncertain. With no more means than
         parameters, this variance cannot be estimated, and both bounds are None.
         """
         if len(self._data) <= self._axes or not self.is_confirmed:
             return None, None
-        return self._bound(axis, upper=False)[1], self._bound(axis, upper=True)[1]
+        low, high = self._bound(axis, upper=False)[1], self._bound(axis, upper=True)[1]
+        good = self._good[:, axis].tolist()
+        return None if low is None else min([low, *good]), None if high is None else max([high, *good])
 
     def bound(self, axis: int, *, upper: bool) -> Array:
         """Returns the point at a bound of the interval of a parameter, or at the end of its range, (p,): where a candidate says most
@@ -95,7 +103,8 @@ class Emulator:
     def _bound(self, axis: int, *, upper: bool) -> tuple[Array, float | None]:
         """Returns the outermost point that fits, and the bound of the interval there; None if the range ends, or the model fails, there."""
         steps: Array = np.unique(np.append(np.linspace(0, 1, STEPS + 1), self.minimum[axis]))
-        starts, outermost = np.tile(self.minimum, (len(steps), 1)), self.minimum
+        starts: Array = np.tile(self.minimum, (len(steps), 1))
+        outermost = self.minimum
         from_worst = self._starts[np.argsort(self._start_squares)[::-1]]
         starts[np.searchsorted(steps, np.rint(from_worst[:, axis] * STEPS) / STEPS)] = from_worst  # the best near each step comes last
         starts[steps == self.minimum[axis]] = self.minimum
@@ -108,9 +117,10 @@ class Emulator:
                 is_end = float(outermost[axis]) in (0.0, 1.0)
                 break
             is_end = not np.isfinite(squares[beyond])
+            parts = np.linspace(0, 1, ZOOM + 1)[:: 1 if upper else -1, None]
+            starts = outermost + parts * ((outermost if is_end else values[beyond]) - outermost)
             low, high = sorted([float(steps[number]), float(steps[beyond])])
             steps = np.linspace(low, high, ZOOM + 1)
-            starts = np.tile(outermost, (len(steps), 1))
         return outermost, None if is_end else float(outermost[axis])
 
     def _profile(self, axis: int, steps: Array, starts: Array) -> tuple[Array, Array]:

@@ -373,8 +373,9 @@ class Fit:
             return []
         emulator = self._emulator(self.target)
         point = emulator.bound(turn // 2, upper=turn % 2 == 1) if is_bound else emulator.minimum
-        rounded = [np.round(point * steps) / steps for steps in (STEPS, 100 * STEPS)]  # a candidate close to an earlier one adds little
-        return [self._values_at(one) for one in (rounded[:1] if is_bound else [*rounded, point])]
+        near, nearer = (np.round(point * steps) / steps for steps in (STEPS, 100 * STEPS))
+        # A candidate close to an earlier one says little elsewhere, such as beyond a jump: each other time, TPE looks there instead.
+        return [self._values_at(one) for one in ([near] if is_bound or number // 2 % 2 else [near, nearer, point])]
 
     def _evaluate(self, number: int, what: str) -> None:
         point = self._propose(number)

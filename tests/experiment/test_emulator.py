@@ -168,7 +168,32 @@ def test_values_at_which_the_model_fails_are_not_searched(true: float) -> None:
 
 def test_a_single_candidate_determines_nothing() -> None:
     emulator = Emulator(np.array([[0.3]]), np.ones((1, 4)), np.zeros(4))
+    assert not emulator.is_confirmed
     assert emulator.interval(0) == (None, None)
+
+
+def test_bounds_are_proposed_also_if_data_cannot_be_reached_and_are_no_more_than_parameters() -> None:
+    for seed in range(5):
+        points = np.random.default_rng(seed).random((14, 3))
+        emulator = Emulator(points, points @ [[1.0, 0.3], [0.5, 0.2], [0.1, 0.8]], np.array([30.0, 20.0]))
+        for axis in range(3):
+            assert emulator.bound(axis, upper=True) == pytest.approx(np.ones(3))
+            assert emulator.interval(axis) == (None, None)
+
+
+def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_another() -> None:
+    """It fails for high a; the interval of d ends where it works."""
+    points, data = np.random.default_rng(4).random((10, 2)), power(np.array(0.4), np.array(0.4)) + 0.03 * (-1) ** X
+
+    def emulator_of(points: Any) -> Emulator:
+        works = points[:, 0] <= 1 / 3
+        return Emulator(points[works], power(*points[works].T), data, points[~works])
+
+    for turn in range(24):
+        emulator = emulator_of(points)
+        further = emulator.minimum if turn % 2 == 0 else emulator.bound(turn // 2 % 2, upper=turn // 4 % 2 == 1)
+        points = np.vstack([points, further])
+    assert None not in emulator_of(points).interval(1)
 
 
 def test_as_many_parameters_as_data_have_no_interval() -> None:
