@@ -215,7 +215,7 @@ def test_means_of_any_size_have_the_same_intervals() -> None:
 @pytest.mark.parametrize(("data", "parameters"), [(4, 2), (2, 1), (3, 1), (12, 2)])
 def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameters: int) -> None:
     """A straight line through the origin, or with an offset, with normal errors whose variance the fit does not know."""
-    rng, runs, inside = np.random.default_rng(7), 200, 0
+    rng, runs, inside = np.random.default_rng(7), 100, 0
     x = np.column_stack([np.linspace(1, 2, data), np.ones(data)])[:, :parameters]
     points = rng.random((12, parameters))
     for _ in range(runs):
@@ -224,4 +224,4 @@ def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameter
         candidates: Any = np.vstack([points, best])  # a fit tries the minimum, too
         low, high = Emulator(candidates, candidates @ x.T, y).interval(0)
         inside += (low is None or low <= 0.5) and (high is None or high >= 0.5)
-    assert 0.92 < inside / runs < 0.98  # 0.95, and about twice the standard error of 200 runs
+    assert 0.9 <= inside / runs < 1  # 0.95, and about twice the standard error of 100 runs
