@@ -208,13 +208,20 @@ def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, 
     expect(rows).to_have_count(1)
 
 
-def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, workbench: Served, recordings: Path) -> None:
-    name = recorded(workbench, "counting.py")
-    copies = [recordings / f"long-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(60)]
+def show_copies(page: Page, workbench: Served, recordings: Path, called: str) -> list[Path]:
+    """Shows 60 recordings in the list, copies of one, and no others; returns them, the oldest first."""
+    original = recordings / f"{recorded(workbench, 'counting.py')}.sqlite"
+    copies = [recordings / f"{called}-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(60)]
     for copy in copies:
-        shutil.copy(recordings / f"{name}.sqlite", copy)
+        shutil.copy(original, copy)
+    original.unlink()
     open_tab(page, "Runs")
-    page.get_by_label("Search recordings").fill("long")
+    page.get_by_label("Search recordings").fill(called)
+    return copies
+
+
+def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, workbench: Served, recordings: Path) -> None:
+    copies = show_copies(page, workbench, recordings, "long")
     order = [copy.stem for copy in reversed(copies)]
     box = row(page, order[5]).locator("input")
     place = page.locator(".runs-list")
@@ -246,12 +253,7 @@ def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, work
 def test_a_key_leads_from_a_row_that_is_scrolled_away_to_the_one_beside_it(
     page: Page, workbench: Served, recordings: Path, key: str, step: int
 ) -> None:
-    name = recorded(workbench, "counting.py")
-    copies = [recordings / f"tabs-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(60)]
-    for copy in copies:
-        shutil.copy(recordings / f"{name}.sqlite", copy)
-    open_tab(page, "Runs")
-    page.get_by_label("Search recordings").fill("tabs")
+    copies = show_copies(page, workbench, recordings, "tabs")
     order = [copy.stem for copy in reversed(copies)]
     page.keyboard.press("Shift")  # from now on by keys
     row(page, order[5]).locator("input").focus()

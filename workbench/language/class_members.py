@@ -39,7 +39,7 @@ class ClassMembers:
             new: The other name.
         """
         family = self.family(owner, member)
-        related = [owner, *sorted(family - {owner}), *(base for agent in sorted(family) for base in self._above(agent))]
+        related = [owner, *sorted(family - {owner}), *(base for agent in sorted(family) for base in self._model.above(agent))]
         for agent in dict.fromkeys(related):
             own = next(iter(self._own(agent, new)), None)
             if own is not None and agent == owner:
@@ -59,9 +59,9 @@ class ClassMembers:
 
     def family(self, owner: str, member: str) -> set[str]:
         """Returns the classes that have a member in common: a class, those of its bases that have it, and all subclasses of these."""
-        having = [owner, *(base for base in self._above(owner) if self.has(base, member))]
-        below = {agent for agent in self._model.agents if any(one in self._above(agent) for one in having)}
-        more = {base for agent in below for base in self._above(agent) if self.has(base, member)}
+        having = [owner, *(base for base in self._model.above(owner) if self.has(base, member))]
+        below = {agent for agent in self._model.agents if any(one in self._model.above(agent) for one in having)}
+        more = {base for agent in below for base in self._model.above(agent) if self.has(base, member)}
         return {*having, *below, *more}
 
     def has(self, agent: str, member: str) -> bool:
@@ -84,8 +84,8 @@ class ClassMembers:
         return self._known[agent]
 
     def _find_above(self, agent: str) -> set[str] | None:
-        found = set(self._above(agent))
-        for one in (agent, *self._above(agent)):
+        found = set(self._model.above(agent))
+        for one in (agent, *self._model.above(agent)):
             for base in self._model.agents[one].bases:
                 if base in self._model.agents:
                     continue
@@ -110,17 +110,6 @@ class ClassMembers:
         if name.before == ("self",) and name.agent:
             return {name.agent}
         return self._python.kinds(self._explicit, self._path, name.start - 1)
-
-    def _above(self, agent: str) -> list[str]:
-        """Returns the classes of the text from which a class inherits."""
-        found: list[str] = []
-        waiting = list(self._model.agents[agent].bases)
-        while waiting:
-            base = waiting.pop(0)
-            if base in self._model.agents and base not in found:
-                found.append(base)
-                waiting += self._model.agents[base].bases
-        return found
 
     def _own(self, agent: str, member: str) -> Iterator[int]:
         """Yields where a class itself defines a name, and where its methods use it as an attribute of `self`."""

@@ -218,15 +218,15 @@ class ModelText:
     def holders(self, agent: str) -> list[Agent]:
         """Returns the classes that have a class, a class that inherits from it, or one from which it inherits, as a part."""
         found = self.agents.get(agent)
-        kinds = {one.name for one in self.agents.values() if found is not None and agent in self._above(one.name)}
+        kinds = {one.name for one in self.agents.values() if found is not None and agent in (one.name, *self.above(one.name))}
         return [one for one in self.agents.values() if any(part.kind in kinds for part in one.parts.values())]
 
-    def _above(self, agent: str) -> list[str]:
-        """Returns a class and those of the text from which it inherits."""
+    def above(self, agent: str) -> list[str]:
+        """Returns the classes of the text from which a class inherits."""
         found = [agent]
         for one in found:
             found += [base for base in self.agents[one].bases if base in self.agents and base not in found]
-        return found
+        return found[1:]
 
     # -- questions
 
