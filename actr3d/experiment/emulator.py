@@ -28,8 +28,10 @@ DESCENTS = 15
 """The maximum number of steps of this search."""
 ZOOM, ZOOMS = 10, 5
 """The number of parts into which the step with the bound of an interval is divided, and how often values are compared."""
-ROUNDING = 1e-9
+ROUNDING = 1e-6
 """By how large a part of itself a sum of squares may differ if it is calculated again, together with other ones."""
+SMOOTH = 5e-4
+"""How much means without jumps scatter around what is predicted where they bend, at most: as a part of their variance over candidates."""
 LEAST = 1e-10
 """The least sum of squares that differs from 0, as a part of the greatest squared difference of any mean of a candidate."""
 
@@ -51,7 +53,7 @@ class Emulator:
         library: Any = import_module("sklearn.gaussian_process")  # here, because this takes a second
         kernels = library.kernels
         unit = float(np.abs(means - data).max()) or 1.0  # so that no square is too large for a float
-        means, data = means / unit, data / unit
+        means, data, self._unit = means / unit, data / unit, unit
         self._middle: Array = means.mean(axis=0)
         deviation: Array = means.std(axis=0)
         deviation[deviation == 0] = 1.0
@@ -64,20 +66,40 @@ class Emulator:
             process = library.GaussianProcessRegressor(kernel).fit(points, (means - self._middle) / deviation)
         self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
         self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
+        around = process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation
+        self._scatter = float(np.mean(np.sum(around**2, axis=1)))
+        self._bends = SMOOTH * float(np.sum(deviation**2))
         self._starts = np.vstack([points, np.random.default_rng(1).random((STARTS, self._axes))])
         self._start_squares = self._squares(self._starts)
         found, squares = self._descend(self._starts[np.argsort(self._start_squares)[: 4 * self._axes]], range(self._axes))
         best = int(np.argmin(squares))
         self.minimum: Array = found[best]
         """Where the sum of squares is least, (p,)."""
-        self._most = max(float(squares[best]), LEAST)
-        if (free := len(data) - self._axes) > 0:
-            self._most *= 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
-        self._most *= 1 + ROUNDING
+        free = len(data) - self._axes
+        # The square of t has the F distribution with 1 and n - p degrees of freedom.
+        self._factor = (1 + float(stdtrit(free, 0.975)) ** 2 / free if free > 0 else 1.0) * (1 + ROUNDING)
+        self._most = self._factor * max(float(squares[best]), LEAST)
         differences = means - data
-        self._good = points[np.einsum("nk,nk->n", differences, differences) <= self._most]
+        tried = np.einsum("nk,nk->n", differences, differences)
+        self._least = float(tried.min())
+        self._good = points[tried <= self._most]
         self.is_confirmed = len(points) > self._axes and bool(np.any(self._squares(points) <= self._most))
         """Whether a candidate fits about as well as the minimum, but for the noise of its means; otherwise, the minimum is a guess."""
+
+    def agrees(self, means: Array, errors: Array) -> bool:
+        """Returns whether the model does as predicted: at the minimum it fits as well, no candidate fits better, and the means of all
+        candidates scatter little around what is predicted.
+
+        If not, they jump somewhere, and neither the minimum nor the intervals are to be trusted. What comes from chance in the model is
+        left out.
+
+        Args:
+            means: The means of the model at the minimum, (k,).
+            errors: Their standard errors, (k,).
+        """
+        squares, noise = (float(np.sum((each / self._unit) ** 2)) for each in (means - self._data * self._unit, 2 * errors))
+        allowed = max(self._most * (1 - 1 / self._factor) / 4, self._bends)
+        return squares <= min(self._most, self._factor * max(self._least, LEAST)) + noise and self._scatter <= allowed + noise
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
         """Returns the bounds of the 95 % interval of a parameter; None where the range ends first or the model fails, and while the
@@ -111,7 +133,8 @@ class Emulator:
         is_end = False
         for _ in range(ZOOMS):
             values, squares = self._profile(axis, steps, starts)
-            number = int(np.flatnonzero(squares <= self._most)[-1 if upper else 0])
+            fits = (squares <= self._most) | (steps == outermost[axis])
+            number = int(np.flatnonzero(fits)[-1 if upper else 0])
             outermost, beyond = values[number], number + (1 if upper else -1)
             if not 0 <= beyond < len(steps):
                 is_end = float(outermost[axis]) in (0.0, 1.0)
@@ -121,7 +144,13 @@ class Emulator:
             starts = outermost + parts * ((outermost if is_end else values[beyond]) - outermost)
             low, high = sorted([float(steps[number]), float(steps[beyond])])
             steps = np.linspace(low, high, ZOOM + 1)
-        return outermost, None if is_end else float(outermost[axis])
+        return outermost, None if is_end or self._is_beyond(float(outermost[axis]), axis, upper=upper) else float(outermost[axis])
+
+    def _is_beyond(self, value: float, axis: int, *, upper: bool) -> bool:
+        """Returns whether a value of a parameter is beyond all with which the model worked, on the way to one with which it failed."""
+        way = 1 if upper else -1
+        worked, failed, value = np.max(way * self._points[:, axis]), way * self._failed[:, axis], way * value
+        return bool(value > worked) and bool(np.any((failed > worked) & (failed - value < 2 * (value - worked))))
 
     def _profile(self, axis: int, steps: Array, starts: Array) -> tuple[Array, Array]:
         """Returns the least sums of squares over all other parameters at some values of one, (m,), and where they are, (m, p).

@@ -23,7 +23,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
-from statistics import fmean
+from statistics import fmean, stdev, variance
 from typing import Any
 
 import numpy as np
@@ -112,6 +112,8 @@ class Range(Configuration):
         try:
             if not equals or not dots:
                 raise ValueError
+            if not (math.isfinite(float(low)) and math.isfinite(float(high))):
+                raise SettingError(f"--parameter {name.strip()}: must be a finite range (got {bounds.strip()})")
             return cls(name=name.strip(), low=float(low), high=float(high))
         except ValueError:
             raise SettingError(f"--parameter: must be NAME=LOW..HIGH (got {text!r})") from None
@@ -160,6 +162,8 @@ class _Simulated:
 
     means: Mapping[Cell, float]
     """Its means by cell, without cells in which a trial failed."""
+    errors: Mapping[Cell, float]
+    """The standard errors of the means that come from chance in the model: with the same participants, as far as trials show it."""
     failed: int
     trials: int
     failure: str
@@ -172,7 +176,7 @@ class Fitted:
 
     name: str
     value: float
-    """The value that fits best according to the emulator; that of the best candidate, if this is not confirmed or fails."""
+    """The value that fits best according to the emulator; if this is not confirmed or fails, the value that was run and fits best."""
     low: float | None
     """The lower bound of its interval; None if the data do not determine it within the range that was searched."""
     high: float | None
@@ -190,7 +194,7 @@ class FitResult:
     """The agreement with the target that the parameters were fitted to."""
     candidates: int
     is_confirmed: bool
-    """Whether a candidate fits as well as any can, according to the emulator; otherwise, there are no intervals yet."""
+    """Whether the model does at the fitted values and at all candidates what the emulator predicts; otherwise, there are no intervals."""
     tried: tuple[TriedCandidate, ...]
     """All candidates, in order."""
     held_out: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
@@ -217,7 +221,7 @@ class Fit:
 
     Raises:
         ExperimentError: If nothing can be fitted.
-        SettingError: If a parameter is given twice, or is a factor of the design.
+        SettingError: If no parameter is given, or one twice, or one is a factor of the design, or no number.
         DesignError: If the design, or the range of a parameter, does not fit the model.
     """
 
@@ -237,7 +241,7 @@ class Fit:
         self._design, self._ranges, self._folder, self._open_cluster = design, tuple(ranges), folder, open_cluster
         self._seed, self._progress, self._evaluated, self._client = seed, progress, evaluated, None
         if not ranges:
-            raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
+            raise SettingError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
         options = {"values": {}, "participants": None, "trials": None, **(options or {})}
@@ -252,13 +256,20 @@ class Fit:
         self._simulated: list[_Simulated] = []
 
     def _check_ranges(self) -> None:
-        """Checks that each parameter has one range, and is none of the design's factors.
+        """Checks that each parameter has one range and no other value, is none of the design's factors, and a number in the model.
 
         Raises:
-            SettingError: If one has two ranges, or is a factor.
+            SettingError: If one is not.
         """
         varied, seen = self._base.design.factors, dict[str, Range]()
+        given, defaults = self._base.specification.values, {one.name: one.default for one in self._base.parameters if one.known}
         for one in self._ranges:
+            if one.name in given:
+                raise SettingError(f"--parameter {one.name}: has a value by --set, too ({plain_text(given[one.name])}); leave out one")
+            if isinstance(default := defaults.get(one.name), (str, bool, list, tuple, dict)):
+                raise SettingError(
+                    f"--parameter {one.name}: is no number in the model (its default is {default!r}); only numbers are fitted"
+                )
             if one.name in seen:
                 ranges = f"{seen[one.name].low:g}..{seen[one.name].high:g} and {one.low:g}..{one.high:g}"
                 raise SettingError(f"--parameter {one.name}: is given twice ({ranges}); give one range")
@@ -288,8 +299,9 @@ class Fit:
             recover: The number of simulated data sets whose parameters are estimated.
 
         Raises:
-            ExperimentError: If no candidate has all means of the target. Before anything runs: if an ablation is not NAME=VALUE, a
-                held-out design or ablated model has no condition of its target, or held-out means are those of the fit.
+            ExperimentError: If no candidate has all means of the target. Before anything runs: if a held-out design or ablated model has
+                no condition of its target, or held-out means are those of the fit.
+            SettingError: If an ablation is not NAME=VALUE; before anything runs.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         hold_out = hold_out or {}
@@ -320,7 +332,14 @@ class Fit:
         intervals = [emulator.interval(axis) for axis in range(len(self._ranges))]
         values = self._values_at(emulator.minimum)
         fitted = self._simulate("candidate", f"fitted values: {_text_of(values)}", self._experiment(values))
-        if not emulator.is_confirmed or not math.isfinite(rmse(fitted.means, self.target)):
+        loss = rmse(fitted.means, self.target)
+        is_confirmed = emulator.is_confirmed
+        if math.isfinite(loss):
+            means, errors = (np.array([each[cell] for cell in self.target]) for each in (fitted.means, fitted.errors))
+            is_confirmed = is_confirmed and emulator.agrees(means, errors)
+        if not is_confirmed:
+            intervals = [(None, None)] * len(self._ranges)
+        if not math.isfinite(loss) or (losses[best] < loss and not is_confirmed):
             values, fitted = self._points[best], tried[best]
         return FitResult(
             design=self._design,
@@ -328,7 +347,7 @@ class Fit:
             parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
             fit=_agreement_of(fitted, self.target),
             candidates=candidates,
-            is_confirmed=emulator.is_confirmed,
+            is_confirmed=is_confirmed,
             tried=tuple(
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
@@ -391,7 +410,7 @@ class Fit:
         except DesignError as error:
             if error.name not in values:
                 raise
-            text = str(error).removeprefix(f"--set {error.name}: ")
+            text = str(error).removeprefix(f"--set {error.name}: ").removeprefix("Design: ").removeprefix("Design: ")
             raise DesignError(f"{option.format(error.name)}: {text}", error.name) from None
 
     def _simulate(
@@ -418,7 +437,7 @@ class Fit:
                 run_experiment(experiment, store, self._client, show=show)
             columns = [name for name, _ in next(iter(self.target if target is None else target))]
             conditions = [name for name in columns if name == "group" or name in experiment.design.factors]
-            means: dict[Cell, float] = {}
+            cells: dict[Cell, list[list[float]]] = {}
             lost, failure = set[Cell](), ""
             if failed := store.failures:
                 for row in (row for row in store.rows() if row["error"] is not None):
@@ -427,8 +446,9 @@ class Fit:
             if failed < store.count:
                 finished = (row for row in store.rows() if row["error"] is None)
                 found = cells_of_rows(finished, experiment.design.measure(measure or self.measure), columns)
-                means = {cell: mean for cell, mean in found.items() if tuple((name, dict(cell)[name]) for name in conditions) not in lost}
-            return _Simulated(means=means, failed=failed, trials=store.count, failure=failure)
+                cells = {cell: of for cell, of in found.items() if tuple((name, dict(cell)[name]) for name in conditions) not in lost}
+            means, errors = ({cell: of(people) for cell, people in cells.items()} for of in (mean_of, chance_error))
+            return _Simulated(means=means, errors=errors, failed=failed, trials=store.count, failure=failure)
 
     def _compared(
         self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
@@ -488,12 +508,11 @@ class Fit:
         """Returns the experiment of the fit with one value of the model changed.
 
         Raises:
-            ExperimentError: If the change has another form than NAME=VALUE.
-            SettingError: If its value is a list that is not one of Python.
+            SettingError: If the change has another form than NAME=VALUE, or its value is a list that is not one of Python.
             DesignError: If it does not fit the model.
         """
         if "=" not in change:
-            raise ExperimentError(f"--ablate: must be NAME=VALUE (got {change!r})")
+            raise SettingError(f"--ablate: must be NAME=VALUE (got {change!r})")
         option = f"--ablate {change.replace('{', '{{').replace('}', '}}')}"
         return self._experiment({**values, **read_settings([change], (), "--ablate")}, option)
 
@@ -603,13 +622,11 @@ def check_measure(name: str, known: Collection[str], experiment: Experiment) -> 
         experiment: The experiment with the design.
 
     Raises:
-        ExperimentError: If it is none of them.
+        SettingError: If it is none of them.
     """
     if name not in known:
         of = experiment.specification.name
-        raise ExperimentError(
-            f"--measure: the trials of the design '{of}' have no measure '{name}'{alternatives(name, known, 'they have:')}"
-        )
+        raise SettingError(f"--measure: the trials of the design '{of}' have no measure '{name}'{alternatives(name, known, 'they have:')}")
 
 
 def _in_cell(level: Any) -> Any:
@@ -679,8 +696,8 @@ def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> d
     return found
 
 
-def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, float]:
-    """Returns the means of a measure by cell, with participants as the unit: means of the participants' means; none without values.
+def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, list[list[float]]]:
+    """Returns the values of a measure by cell, those of each participant in a list of their own; nothing without values.
 
     Raises:
         ExperimentError: If no row has a column for the measure, or one of the columns.
@@ -697,7 +714,22 @@ def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[
         wrong = next((name for name in (measure.name, *columns) if name not in known), None)
         if wrong is not None:
             raise ExperimentError(f"no trial has a value of '{wrong}'{alternatives(wrong, known, 'the columns are:')}")
-    return {cell: fmean(fmean(values) for values in people.values()) for cell, people in found.items()}
+    return {cell: [*people.values()] for cell, people in found.items()}
+
+
+def mean_of(people: Sequence[Sequence[float]]) -> float:
+    """Returns the mean of a cell, with participants as the unit: the mean of the participants' means."""
+    return fmean(map(fmean, people))
+
+
+def chance_error(people: Sequence[Sequence[float]]) -> float:
+    """Returns the standard error of the mean of a cell that comes from chance between the trials of each participant.
+
+    Where a participant has a single trial, it is that which comes from all differences between participants; 0 if there is one.
+    """
+    if all(len(values) > 1 for values in people):
+        return math.sqrt(sum(variance(values) / len(values) for values in people)) / len(people)
+    return stdev(map(fmean, people)) / math.sqrt(len(people)) if len(people) > 1 else 0.0
 
 
 def rmse(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> float:

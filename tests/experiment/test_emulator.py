@@ -173,12 +173,15 @@ def test_a_single_candidate_determines_nothing() -> None:
 
 
 def test_bounds_are_proposed_also_if_data_cannot_be_reached_and_are_no_more_than_parameters() -> None:
-    for seed in range(5):
-        points = np.random.default_rng(seed).random((14, 3))
-        emulator = Emulator(points, points @ [[1.0, 0.3], [0.5, 0.2], [0.1, 0.8]], np.array([30.0, 20.0]))
-        for axis in range(3):
-            assert emulator.bound(axis, upper=True) == pytest.approx(np.ones(3))
-            assert emulator.interval(axis) == (None, None)
+    """A fit crowds its candidates where the model comes nearest, until sums of squares are known to few digits."""
+
+    def two(a: Any, b: Any, c: Any) -> Any:
+        return np.stack([5 * a + 5 * b + c * c, 10 * a - 5 * b + 7 * a * b + c], axis=-1)
+
+    emulator = tried(two, 3, np.array([-3, 9]), 40)
+    for axis in range(3):
+        assert emulator.bound(axis, upper=True).shape == (3,)
+        assert emulator.interval(axis) == (None, None)
 
 
 def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_another() -> None:
@@ -194,6 +197,37 @@ def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_
         further = emulator.minimum if turn % 2 == 0 else emulator.bound(turn // 2 % 2, upper=turn // 4 % 2 == 1)
         points = np.vstack([points, further])
     assert None not in emulator_of(points).interval(1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_where_the_model_fails_is_no_bound_of_the_parameter_that_makes_it_fail(seed: int) -> None:
+    """It fails for high a; other values of d, near which it works, do not make that a bound."""
+    rng = np.random.default_rng(seed)
+    points, data = rng.random((10, 2)), power(np.array(0.31), np.array(0.4)) + rng.normal(0, 0.05, 8)
+
+    def emulator_of(points: Any) -> Emulator:
+        works = points[:, 0] <= 1 / 3
+        return Emulator(points[works], power(*points[works].T), data, points[~works])
+
+    for turn in range(26):
+        emulator = emulator_of(points)
+        further = emulator.minimum if turn % 2 == 0 else emulator.bound(turn // 2 % 2, upper=turn // 4 % 2 == 1)
+        points = np.vstack([points, further])
+    high = emulator_of(points).interval(0)[1]
+    assert high is None or high <= 1 / 3
+
+
+@pytest.mark.parametrize(("jump", "chance", "agrees"), [(0.0, 0.0, True), (2.0, 0.0, False), (0.0, 0.1, True)])
+def test_a_model_whose_means_jump_does_not_agree_but_chance_does_no_harm(jump: float, chance: float, agrees: bool) -> None:
+    rng = np.random.default_rng(3)
+
+    def means(points: Any) -> Any:
+        chances = rng.normal(0, chance, (len(points), 8)) if chance else 0.0
+        return np.where(points > 0.45, jump, 0.0) + points * X + chances
+
+    points = np.linspace(0.02, 0.98, 25)[:, None]
+    emulator = Emulator(points, means(points), means(np.array([[0.47]]))[0] + rng.normal(0, 0.1, 8))
+    assert emulator.agrees(means(emulator.minimum[None])[0], np.full(8, chance)) == agrees
 
 
 def test_as_many_parameters_as_data_have_no_interval() -> None:
