@@ -66,7 +66,7 @@ class Emulator:
             process = library.GaussianProcessRegressor(kernel).fit(points, (means - self._middle) / deviation)
         self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
         self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
-        around = process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation
+        around: Array = process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation
         self._scatter = float(np.mean(np.sum(around**2, axis=1)))
         self._bends = SMOOTH * float(np.sum(deviation**2))
         self._starts = np.vstack([points, np.random.default_rng(1).random((STARTS, self._axes))])
