@@ -44,7 +44,7 @@ def scan() -> Scan:
 @cache
 def scene_setter() -> SetScene:
     """Returns the first half of `scan`, compiled: it finds what may be in view."""
-    return kept(_set_scene, SOURCES)
+    return kept(set_scene, SOURCES)
 
 
 @cache
@@ -57,7 +57,7 @@ def _scan(
     eye: Array,
     place: Array,
     turn: Array,
-    optics: Array,
+    constants: Array,
     geoms: Geoms,
     topology: Topology,
     scene: EyeScene,
@@ -65,20 +65,12 @@ def _scan(
     labels: Array,
     extents: Records,
 ) -> int:
-    failed = _set_scene(eye, place, turn, optics, geoms, topology, scene)
-    return failed if failed < 0 else _trace_rows(eye, optics, topology, scene, row, labels, extents)
+    failed = set_scene(eye, place, turn, constants, geoms, topology, scene)
+    return failed if failed < 0 else _trace_rows(eye, constants, topology, scene, row, labels, extents)
 
 
-def _set_scene(eye: Array, place: Array, turn: Array, optics: Array, geoms: Geoms, topology: Topology, scene: EyeScene) -> int:
-    return set_scene(eye, place, turn, geoms, topology, optics[0], scene)
-
-
-def _trace_rows(eye: Array, optics: Array, topology: Topology, scene: EyeScene, row: Row, labels: Array, extents: Records) -> int:
-    return _look(eye, optics[0], topology, scene, row, labels, extents)
-
-
-@compiled
-def _look(eye: Array, optics: Record, topology: Topology, scene: EyeScene, row: Row, labels: Array, extents: Records) -> int:
+def _trace_rows(eye: Array, constants: Array, topology: Topology, scene: EyeScene, row: Row, labels: Array, extents: Records) -> int:
+    optics = constants[0]
     done, present = zero(), zero()
     row.stretches[0].count = row.stretches[0].open = 0
     for number in range(optics.rows):

@@ -93,19 +93,19 @@ def room_for_scene(topology: Topology, rows: int) -> EyeScene:
     )
 
 
-@compiled
-def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: EyeScene) -> int:
+def set_scene(eye: Array, place: Array, turn: Array, constants: Array, geoms: Geoms, topology: Topology, scene: EyeScene) -> int:
     """Finds what may be in view; returns 0, or `-1 - geom` if the pose of a geom is not finite.
 
     Args:
         eye: The eye's right, up and forward axes, and its position, as rows in the world frame.
         place: The geoms' positions in the world frame.
         turn: The geoms' rotations, `(n, 9)`.
+        constants: An array of the constants of one eye.
         geoms: The geoms of the model.
         topology: The topology of the model.
-        optics: The constants of the eye.
         scene: The work arrays to fill.
     """
+    optics = constants[0]
     count, occluders = zero(), zero()
     remove_all(scene.surfaces)
     for turn_of in range(2):  # first those that may hide others
