@@ -63,11 +63,11 @@ class Emulator:
         kernel = kernels.ConstantKernel(1.0, (1e-2, 1e4)) * lengths + kernels.WhiteKernel(1e-6, (1e-10, 1.0))
         with warnings.catch_warnings(), _one_thread():
             warnings.simplefilter("ignore")  # that an estimate is at its bound: that of a straight line is
-            process: Any = library.GaussianProcessRegressor(kernel).fit(points, (means - self._middle) / deviation)
+            process = library.GaussianProcessRegressor(kernel).fit(points, (means - self._middle) / deviation)
         self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
         self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
-        around: Array = np.asarray(process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation)
-        self._scatter = float(np.mean(np.sum(np.square(around), axis=1)))
+        around: Array = process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation
+        self._scatter = float(np.einsum("nk,nk->", around, around)) / len(points)
         self._bends = SMOOTH * float(np.sum(deviation**2))
         self._starts = np.vstack([points, np.random.default_rng(1).random((STARTS, self._axes))])
         self._start_squares = self._squares(self._starts)

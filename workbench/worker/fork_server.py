@@ -36,12 +36,21 @@ ASK = struct.Struct("!i")
 FAREWELL = 1.0
 """Maximum time to wait for the end of its workers at shutdown [s]."""
 SMALL = """
+from dataclasses import dataclass
+
 from actr3d.actr import *
 from actr3d.motor import Motor
 from actr3d.sgoms import SGOMS
 from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+
+class Blind(SGOMS):
+    motor = Motor()
+
+    def init():
+        motor.rotate("torso", "yaw", 10)
 
 
 class Walker(SGOMS):
@@ -54,8 +63,14 @@ class Walker(SGOMS):
         vision.request("feature:opening")
 
 
-def build() -> Simulation:
-    return Simulation(Scene(parts=(Floor(), Aperture(), Mannequin(name="walker"))), {"walker": Walker})
+@dataclass(frozen=True)
+class Parameters:
+    sees: bool = True
+
+
+def build(parameters: Parameters) -> Simulation:
+    agent = Walker if parameters.sees else Blind
+    return Simulation(Scene(parts=(Floor(), Aperture(), Mannequin(name="walker"))), {"walker": agent})
 """
 """A model that uses what most models use: whatever it makes the library load, parse or compile is ready in every worker."""
 
@@ -120,10 +135,12 @@ def preload() -> None:
             os._exit(0)
     compile_camera("scene")
     compile_detectors()
-    os.waitpid(copy, 0)
-    with RunLimits(seed=0):
-        simulation, _ = Blueprint(SMALL, "small.py", Path()).build({})
-        simulation.run(0.1)
+    for sees in (False, True):
+        if sees:
+            os.waitpid(copy, 0)
+        with RunLimits(seed=0):
+            simulation, _ = Blueprint(SMALL, "small.py", Path()).build({"sees": sees})
+            simulation.run(0.1)
 
 
 def compile_camera(half: Literal["scene", "rows"]) -> None:
