@@ -215,7 +215,7 @@ class Writer:
         with suppress(sqlite3.Error, AttributeError):  # it may not have been opened
             self._file.close()
         _remove(self.path)
-        return "; nothing of the run is kept"
+        return "; nothing was written"
 
     # -- the file
 

@@ -122,7 +122,7 @@ def test_any_loss_of_items_stops_the_recording(error: BaseException, tmp_path: P
         with pytest.raises(type(error)) if isinstance(error, KeyboardInterrupt) else nullcontext():
             recording._writer.flush()
     recording.event(TraceEvent(6, "top", "state", {"number": 2}))
-    with pytest.raises(RecordingError, match=f"cannot write the recording '.*run': {type(error).__name__}; nothing of the run is kept"):
+    with pytest.raises(RecordingError, match=f"cannot write the recording '.*run': {type(error).__name__}; nothing was written"):
         recording.check()
     with pytest.raises(RecordingError):
         recording.close()
@@ -500,5 +500,5 @@ def test_a_run_that_begins_on_a_full_disk_leaves_no_empty_recording(size: int, t
     assert done.returncode == 1
     last = done.stderr.strip().splitlines()[-1]
     assert last.startswith(f"actr3d.errors.RecordingError: cannot write the recording '{path}': ")
-    assert last.endswith("; nothing of the run is kept")
+    assert last.endswith("; nothing was written")
     assert list(path.parent.iterdir()) == []

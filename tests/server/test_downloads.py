@@ -97,7 +97,7 @@ def test_a_run_that_cannot_begin_on_a_full_disk_ends_with_the_reason(desk: Desk,
         talk = desk.begin(tmp_path, FLOOD, name="flood.py", record=True, wait=None)
         for run in talk.session._going:
             desk.do(run.over.wait())
-    assert re.fullmatch(r"cannot write the recording '.*': .*; nothing of the run is kept", talk.facts["ending"])
+    assert re.fullmatch(r"cannot write the recording '.*': .*; nothing was written", talk.facts["ending"])
     assert talk.facts["kind"] == "program"
 
 
