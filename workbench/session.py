@@ -111,7 +111,7 @@ class Session(Broadcast, Receiver):
         self._beginning = asyncio.Lock()
         """Held while a new run is being given a worker."""
         self._not_kept: str | None = None
-        """Why runs are not recorded although they should be."""
+        """Why runs, or the rest of the run, are not recorded although they should be."""
         self._closed = False
         self._given_up = 0
         """Attempts up to this number are cancelled if they have no worker yet."""
@@ -233,6 +233,7 @@ class Session(Broadcast, Receiver):
                 self.branched = message
                 self.changed(facts=True)
             case Unrecorded():
+                self._not_kept = f"What follows is not recorded: {launched.unwritten}"
                 launched.start = msgspec.structs.replace(launched.start, record=None)
                 self._lists_changed()
                 self.changed(facts=True)

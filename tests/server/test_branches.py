@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import resource
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -249,6 +250,8 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(k
             talk.say("command", **clear)
         talk.say("command", **clear, drop=True)
         assert talk.state["reason"] == "changed at 0.10 s; what follows is not recorded"
+        talk.wait(lambda: talk.facts["recording"] is None)
+        assert re.fullmatch(r"What follows is not recorded: cannot write the recording .*", talk.facts["not_kept"])
         talk.say("until", time=0.5)
         talk.until("paused", time=0.5)
     facts = talk.facts
