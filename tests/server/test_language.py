@@ -573,6 +573,10 @@ def other(number):
         (SCOPES.replace("self, size", "self, si|ze"), "width", [9, 10]),
         (SCOPES.replace("{number:", "{num|ber:"), "width", [14]),
         (SCOPES.replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
+        (f"{SCOPES}print(sum(number for number in [1]))\n".replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
+        (f"{SCOPES}print(sum(number for number in [1]))\n".replace("sum(number", "sum(num|ber"), "width", [16]),
+        ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
+        ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
 )
 def test_a_name_is_renamed_in_all_its_places(ask: Asked, text: str, name: str, lines: list[int] | None) -> None:
@@ -626,6 +630,8 @@ report(Base(), size=4)
         (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'squeeze' in line 301 is the same is not known"),
         (APERTURE.replace("    pass_doorway =", "    pass_|doorway ="), "whether 'pass_doorway' in line 440 is the same is not known"),
         (APERTURE.replace("self.judged", "self.jud|ged", 1), "whether 'judged' in line 648 is the same is not known"),
+        ("class Box:\n    def __en|ter__(self): pass\n", "'__enter__' has a meaning in Python, and keeps its name"),
+        (FAN.replace("None", "No|ne", 1), "there is no name here"),
         (WHOLE.replace("print(self.seen)", "print(getattr(self, 'seen'))").replace("self.seen =", "self.se|en ="), "'seen' in line 15"),
         (PAIRED.replace("def start", "def sta|rt"), "'start' is defined in .*, and keeps its name"),
     ],

@@ -161,8 +161,9 @@ class PythonAnswers:
 
     def _kinds(self, found: list[Any], path: str) -> set[str] | None:
         own = self._folder / path
-        names = [(one, (one.full_name or "").removeprefix(one.module_name).removeprefix(".")) for one in found]
-        return {name if one.module_path == own else f"{one.module_name}:{name}" for one, name in names} or None
+        names = [(one, one.module_name or "") for one in found]  # what jedi makes up itself, such as a named tuple, is in no module
+        names = [(one, module, (one.full_name or one.name).removeprefix(module).removeprefix(".")) for one, module in names]
+        return {name if one.module_path == own else f"{module}:{name}" for one, module, name in names} or None
 
     @staticmethod
     def ancestors(kinds: set[str] | None) -> set[str] | None:

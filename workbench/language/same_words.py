@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import keyword
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -81,7 +82,7 @@ class SameWords:
             if found is None:
                 raise LanguageError("there is no name here that can be renamed")
             word, start = found.text, found.start
-        elif name is not None:
+        elif name is not None and not keyword.iskeyword(name.text):
             word, start = name.text, name.start
             self._check_name(name)
         else:
@@ -98,7 +99,7 @@ class SameWords:
             own = sorted(str(one) for one in meaning.owners if one in self.model.agents)
             if not own:
                 kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "")
-                raise LanguageError(f"'{word}' is defined in {kind.replace(':', '.')}, and keeps its name here" if kind else unknown)
+                raise LanguageError(f"'{word}' is defined in {kind.replace(':', '.').lstrip('.')}, and keeps its name here" if kind else unknown)
             of_library = self.members.library(own[0], word)
             if of_library:
                 raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
@@ -162,8 +163,10 @@ class SameWords:
             for piece in self._variables(text):
                 if piece.text == word:
                     yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
-        for found in re.finditer(rf"\w\[[\"']({re.escape(word)})[\"']\]", self.model.text):
-            yield WordPlace(start=found.start(1), name=None, meaning=Meaning(what="slot"))
+        for found in re.finditer(rf"(\w+)\[[\"']({re.escape(word)})[\"']\]", self.model.text):
+            is_class = found[1] in self.model.agents  # of an Enum
+            meaning = Meaning(what="member", owners=frozenset({found[1]})) if is_class else Meaning(what="slot")
+            yield WordPlace(start=found.start(2), name=None, meaning=meaning)
         for name in self.model.names:
             if name.text == word:
                 yield WordPlace(start=name.start, name=name, meaning=self._of_name(name))
@@ -287,6 +290,8 @@ class SameWords:
     # -- what may not be renamed
 
     def _check_name(self, name: Name) -> None:
+        if name.text.startswith("__") and name.text.endswith("__"):
+            raise LanguageError(f"'{name.text}' has a meaning in Python, and keeps its name")
         method = self.model.method(name.method)
         if name.text == "self" and not name.before and method is not None and method.sees_parts:
             raise LanguageError("'self' is the agent in every production, and keeps its name")

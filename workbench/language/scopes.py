@@ -132,7 +132,7 @@ def _classes(node: Any) -> list[str]:
 def _is_plain(leaf: Any) -> bool:
     """Returns whether a name is neither an attribute nor that of an argument."""
     before, parent = leaf.get_previous_leaf(), leaf.parent
-    is_argument = parent.type == "argument" and parent.children[0] is leaf and parent.children[1].value == "="
+    is_argument = parent.type == "argument" and parent.children[0] is leaf and parent.children[1] == "="
     return (
         not (before is not None and before.type == "operator" and before.value == "." and parent.type != "import_from") and not is_argument
     )
