@@ -585,6 +585,14 @@ def test_a_name_is_renamed_in_all_its_places(ask: Asked, text: str, name: str, l
     assert changed == (lines or [number for number, line in enumerate(plain.splitlines(), 1) if re.search(r"\bnears\b", line)])
 
 
+POSTURES = """from actr3d.actr import *
+import actr3d.motor as am
+
+class Walker(ACTR):
+    felt = Buffer()
+    motor = am.Motor(felt)
+    def feel(felt="posture:? ext|reme:maximum"): pass
+"""
 REPORTED = """from actr3d.actr import *
 
 class Base(ACTR):
@@ -624,12 +632,20 @@ report(Base(), size=4)
         (DOORWAY.replace("speed: Ann", "spe|ed: Ann"), "whether 'speed' in line 43 is the same is not known"),
         (DOORWAY.replace("pose x:", "pose |x:"), "'x' is a slot of 'pose', and keeps its name here"),
         (DOORWAY.replace("def build", "def bu|ild"), "'build' is called to make the simulation"),
-        (APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'), "where it is defined is not known"),
+        (APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'), "'b_context' is an attribute of SGOMS, and keeps its name here"),
         (APERTURE.replace('motor="busy:', 'motor="bu|sy:', 1), "'busy' is defined in .*, and keeps its name here"),
         (APERTURE.replace('    answer = "', '    ans|wer = "', 1), "whether 'answer' in line 302 is the same is not known"),
         (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'squeeze' in line 301 is the same is not known"),
         (APERTURE.replace("    pass_doorway =", "    pass_|doorway ="), "whether 'pass_doorway' in line 440 is the same is not known"),
         (APERTURE.replace("self.judged", "self.jud|ged", 1), "whether 'judged' in line 648 is the same is not known"),
+        (APERTURE.replace("state:start", "sta|te:start", 1), "'state' is a slot of SGOMS, and keeps its name here"),
+        (APERTURE.replace("b_DM.clear()", "b_D|M.clear()", 1), "'b_DM' is .*, and keeps its name here"),
+        (POSTURES, "'extreme' is a slot of Motor, and keeps its name here"),
+        (APERTURE.replace("when:now", "wh|en:now", 1), "'when' is a slot of SGOMS, and keeps its name here"),
+        (APERTURE.replace("planning_unit:squeeze", "plan|ning_unit:squeeze", 1), "'planning_unit' is a slot of SGOMS, and keeps its name"),
+        (APERTURE.replace('state="recalling"', 'sta|te="recalling"'), "'state' is a slot of SGOMS, and keeps its name here"),
+        (APERTURE.replace("b_unit_task=", "b_unit|_task=", 1), "'b_unit_task' is defined in actr3d.sgoms.agent, and keeps its name here"),
+        (FAN.replace("    profile =", "    pro|file ="), "'profile' is defined in actr3d.actr.kernel.model, and keeps its name here"),
         ("class Box:\n    def __en|ter__(self): pass\n", "'__enter__' has a meaning in Python, and keeps its name"),
         (FAN.replace("None", "No|ne", 1), "there is no name here"),
         (WHOLE.replace("print(self.seen)", "print(getattr(self, 'seen'))").replace("self.seen =", "self.se|en ="), "'seen' in line 15"),

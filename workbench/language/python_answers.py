@@ -19,7 +19,7 @@ from jedi.inference.compiled.subprocess import InferenceStateSameProcess
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
-from workbench.language.library_words import is_called_by_library
+from workbench.language.library_words import is_called_by_library, slots_given
 
 settings.auto_import_modules = []
 settings.allow_unsafe_interpreter_executions = False
@@ -170,14 +170,16 @@ class PythonAnswers:
         """Returns classes of other texts, as `kinds` names them, and all from which these inherit; None if they are not known."""
         found: set[str] = set()
         for kind in kinds or {""}:
-            module, _, name = kind.partition(":")
-            # The library itself may be imported; its classes are those that a text can inherit from.
-            source = import_module(module) if module.startswith("actr3d.") and find_spec(module) else sys.modules.get(module)
-            one = getattr(source, name, None)
-            if not isinstance(one, type):
+            one = _class(kind)
+            if one is None:
                 return None
             found |= {f"{base.__module__}:{base.__qualname__}" for base in one.__mro__}
         return found
+
+    def slots_given(self, explicit: ExplicitText, path: str, expression: str) -> set[str]:
+        """Returns the slots that the library gives to the chunks of the class that an expression names, or of an object of it."""
+        kinds = [_class(kind) for kind in self.kinds_of(explicit, path, expression) or ()]
+        return {slot for kind in kinds if kind is not None for slot in slots_given(kind)}
 
     def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
         """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
@@ -221,6 +223,15 @@ class PythonExpressions:
         """Returns whether an expression is True or False."""
         script, line, column = self._after(expression)
         return any(one.full_name == "builtins.bool" for one in script.infer(line, column - 1))
+
+
+def _class(kind: str) -> type | None:
+    """Returns a class of another text, as `PythonAnswers.kinds` names it; None if it is not known."""
+    module, _, name = kind.partition(":")
+    # The library itself may be imported; its classes are those that a text can inherit from.
+    source = import_module(module) if module.startswith("actr3d.") and find_spec(module) else sys.modules.get(module)
+    found = getattr(source, name, None)
+    return found if isinstance(found, type) else None
 
 
 def _public_names(before: str) -> list[str] | None:

@@ -90,6 +90,8 @@ class SameWords:
         target = next(one for one in self._words(word) if one.start == start)
         meaning = target.meaning
         unknown = f"'{word}' cannot be renamed: where it is defined is not known"
+        if meaning is None and name is not None and not name.before and not (name.keyword and name.called):
+            self._check_members([one.name for one in self.model.lineage(name.agent)], word)
         if meaning is None or meaning == _LIBRARY:
             raise LanguageError(unknown)
         if meaning.what == "slot":
@@ -100,9 +102,7 @@ class SameWords:
             if not own:
                 kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "")
                 raise LanguageError(f"'{word}' is defined in {kind.replace(':', '.').lstrip('.')}, and keeps its name here" if kind else unknown)
-            of_library = self.members.library(own[0], word)
-            if of_library:
-                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
+            self._check_members(own[:1], word)
             if self._is_part(word, meaning):
                 what = "part"
         starts, unproven = self.places(word, start)
@@ -302,12 +302,23 @@ class SameWords:
         if defined is not None and defined.at is None:
             raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
 
+    def _check_members(self, agents: list[str], word: str) -> None:
+        for agent in agents:
+            of_library = self.members.library(agent, word)
+            if of_library:
+                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
+
     def _check_slot(self, slot: str) -> None:
         for text in self.model.texts:
             if any(one.text == slot for one in text.slots):
                 word = actr_answers.giver(self.model, text, slot)
                 if word:
                     raise LanguageError(f"'{slot}' is a slot of '{word}', and keeps its name here")
+        agents = self.model.agents.values()
+        kinds = {part.kind: f"{one.name}.{part.name}" for one in agents for part in one.parts.values()}
+        for kind, expression in (kinds | {base: base for one in agents for base in one.bases}).items():
+            if kind not in self.model.agents and slot in self._python.slots_given(self.explicit, self._path, expression):
+                raise LanguageError(f"'{slot}' is a slot of {kind}, and keeps its name here")
 
     def _defines(self, start: int) -> bool:
         return self._scopes.is_definition(self.explicit.place(start))
