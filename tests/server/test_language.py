@@ -528,6 +528,18 @@ class Whole(ACTR):
     def look(goal="task", eyes="first:4"):
         print(self.seen)
 """
+KEYWORDS = """from actr3d.actr import *
+
+class Walker(ACTR):
+    goal = Buffer()
+    vision = Vision(goal)
+    def look(goal="left:?left"):
+        vision.request("feature:opening", width=2, left=">?left")
+        goal.modify(other=left)
+    def again(goal="left:?left"):
+        vision.request("feature:opening", left="?left")
+        print("?left")
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -575,6 +587,8 @@ def other(number):
         (SCOPES.replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
         (f"{SCOPES}print(sum(number for number in [1]))\n".replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
         (f"{SCOPES}print(sum(number for number in [1]))\n".replace("sum(number", "sum(num|ber"), "width", [16]),
+        (KEYWORDS.replace("left:?left", "left:?le|ft", 1), "port", [6, 7, 8]),
+        (KEYWORDS.replace('">?left"', '">?le|ft"'), "port", [6, 7, 8]),
         ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
         ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
@@ -640,6 +654,7 @@ report(Base(), size=4)
         (APERTURE.replace("self.judged", "self.jud|ged", 1), "whether 'judged' in line 648 is the same is not known"),
         (APERTURE.replace("state:start", "sta|te:start", 1), "'state' is a slot of SGOMS, and keeps its name here"),
         (APERTURE.replace("b_DM.clear()", "b_D|M.clear()", 1), "'b_DM' is .*, and keeps its name here"),
+        (KEYWORDS.replace("other=left", "other='?left'").replace("?left", "?le|ft", 1), "whether '.?left' in line 8 is the same"),
         (POSTURES, "'extreme' is a slot of Motor, and keeps its name here"),
         (APERTURE.replace("when:now", "wh|en:now", 1), "'when' is a slot of SGOMS, and keeps its name here"),
         (APERTURE.replace("planning_unit:squeeze", "plan|ning_unit:squeeze", 1), "'planning_unit' is a slot of SGOMS, and keeps its name"),

@@ -22,6 +22,7 @@ _MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,
 """A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}."""
 _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
+_STRINGS = {"member": _MEMBER, "slot": _SLOT, "variable": r"\?({0})\b"}
 _VALUE = r"""["']({0})["']"""
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
@@ -120,7 +121,9 @@ class SameWords:
         found = {one.start: self._is_same(word, target, one) for one in words}
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
-        strings = self._in_strings(_MEMBER if target.meaning.what == "member" else _SLOT if target.meaning.what == "slot" else "", word)
+        strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
+        if target.meaning.what == "variable":
+            strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
         if self._is_part(word, target.meaning):  # SGOMS names planning units by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
@@ -129,6 +132,10 @@ class SameWords:
     def _is_part(self, word: str, meaning: Meaning) -> bool:
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
         return any(word in self.model.agents[one].parts for agent in own for one in self.members.family(agent, word))
+
+    def _method_at(self, at: int) -> str:
+        """Returns the method around a position."""
+        return next((name.method for name in reversed(self.model.names) if name.start < at), "")
 
     def _in_strings(self, pattern: str, word: str) -> set[int]:
         """Returns where a word stands in strings that are no known texts of chunks or patterns, in the way that a pattern describes."""
