@@ -109,7 +109,8 @@ class SameWords:
         starts, unproven = self.places(word, start)
         if unproven:
             line = self.model.text.count("\n", 0, min(unproven)) + 1
-            raise LanguageError(f"'{word}' cannot be renamed: whether '{word}' in line {line} is the same is not known")
+            shown = self._written(min(unproven)) or word
+            raise LanguageError(f"'{word}' cannot be renamed: whether '{shown}' in line {line} is the same is not known")
         if meaning.what == "member" and what != "part" and not any(self._defines(place) for place in starts):
             raise LanguageError(unknown)
         return Renaming(name=word, what=what, starts=sorted(starts))
@@ -128,6 +129,11 @@ class SameWords:
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
         return same, unproven | (strings - found.keys())
+
+    def _written(self, at: int) -> str:
+        """Returns what stands around a position in a string without a space, such as `walker.speed`; empty if it is in none."""
+        begin, end = next(((begin, end) for begin, end in self.model.other_texts if begin <= at < end), (at, at))
+        return next((one[0] for one in re.compile(r"\S+").finditer(self.model.text, begin, end) if one.end() > at), "")
 
     def _is_part(self, word: str, meaning: Meaning) -> bool:
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
