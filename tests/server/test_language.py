@@ -540,6 +540,22 @@ class Walker(ACTR):
         vision.request("feature:opening", left="?left")
         print("?left")
 """
+FIELDS = """from actr3d.actr import *
+
+class Parameters:
+    noise: float = 1
+
+class Walker(ACTR):
+    goal = Buffer()
+    def look(goal="look"):
+        print(noise)
+
+def build(parameters: Parameters):
+    walker = Walker()
+    print(walker.goal)
+    walker.noise = parameters.noise
+    return walker
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -589,6 +605,8 @@ def other(number):
         (f"{SCOPES}print(sum(number for number in [1]))\n".replace("sum(number", "sum(num|ber"), "width", [16]),
         (KEYWORDS.replace("left:?left", "left:?le|ft", 1), "port", [6, 7, 8]),
         (KEYWORDS.replace('">?left"', '">?le|ft"'), "port", [6, 7, 8]),
+        (APERTURE.replace("    scan = ", "    sc|an = "), "looks", [284, 285, 287, 288, 291, 292, 355, 358, 359, 426]),
+        (FIELDS.replace("noise: float", "noi|se: float"), "sigma", [4, 14]),
         ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
         ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],

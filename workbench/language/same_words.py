@@ -14,7 +14,7 @@ from workbench.language import actr_answers
 from workbench.language.answers import LanguageError, Renaming
 from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
-from workbench.language.model_text import ChunkText, Method, ModelText, Name, Piece, SlotName
+from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, SlotName
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
 
@@ -24,6 +24,7 @@ _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
 _STRINGS = {"member": _MEMBER, "slot": _SLOT, "variable": r"\?({0})\b"}
 _VALUE = r"""["']({0})["']"""
+_PLANNING_UNITS = {"actr3d.sgoms.units:Ordered", "actr3d.sgoms.units:Situated"}
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -125,7 +126,7 @@ class SameWords:
         strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
-        if self._is_part(word, target.meaning):  # SGOMS names planning units by values: planning_unit:squeeze
+        if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
         return same, unproven | (strings - found.keys())
@@ -136,8 +137,16 @@ class SameWords:
         return next((one[0] for one in re.compile(r"\S+").finditer(self.model.text, begin, end) if one.end() > at), "")
 
     def _is_part(self, word: str, meaning: Meaning) -> bool:
+        return next(self._parts(word, meaning), None) is not None
+
+    def _is_planning_unit(self, word: str, meaning: Meaning) -> bool:
+        return any(_PLANNING_UNITS & (self._of_part(part)[1] or _PLANNING_UNITS) for part in self._parts(word, meaning))
+
+    def _parts(self, word: str, meaning: Meaning) -> Iterator[Part]:
+        """Yields the parts that a member means."""
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
-        return any(word in self.model.agents[one].parts for agent in own for one in self.members.family(agent, word))
+        agents = [self.model.agents[one] for agent in own for one in sorted(self.members.family(agent, word))]
+        yield from (agent.parts[word] for agent in agents if word in agent.parts)
 
     def _method_at(self, at: int) -> str:
         """Returns the method around a position."""
@@ -193,16 +202,20 @@ class SameWords:
         part = self.model.parts_of(text.agent).get(text.part) if text.kind == "pattern" and slot.text.isidentifier() else None
         if part is None or part.kind == "Buffer":
             return Meaning(what="slot")
+        kinds, above = self._of_part(part)
+        if kinds is None or above is None:
+            return None
+        return Meaning(what="slot") if _BUFFER in above else Meaning(what="member", owners=frozenset(kinds))
+
+    def _of_part(self, part: Part) -> tuple[set[str] | None, set[str] | None]:
+        """Returns the classes that a part may have, and all from which these inherit; None if they are not known."""
         own = part.kind in self.model.agents
         expression = f"{part.agent}.{part.name}"
         if expression not in self._kinds_of_parts:
             found = {part.kind} if own else self._python.kinds_of(self.explicit, self._path, expression)
             self._kinds_of_parts[expression] = found
         kinds = self._kinds_of_parts[expression]
-        above = self.members.above(part.kind) if own else self._python.ancestors(kinds)
-        if kinds is None or above is None:
-            return None
-        return Meaning(what="slot") if _BUFFER in above else Meaning(what="member", owners=frozenset(kinds))
+        return kinds, self.members.above(part.kind) if own else self._python.ancestors(kinds)
 
     def _of_name(self, name: Name) -> Meaning | None:
         place = self.explicit.place(name.start)
@@ -294,11 +307,17 @@ class SameWords:
         if name is None:  # of a part whose class is not known
             return None if one.what in ("slot", "member") else False
         if not name.called or not name.keyword:
-            return None if one.what == "member" else False
+            return None if one.what == "member" and (name.before or self._is_seen(word, one, name)) else False
         if one.what == "local":
             function = self._scopes.function_with_parameter(self.explicit.place(target.start))
             return None if function in (name.called[-1], "__init__", "") else False
         return False if one.what == "variable" else None
+
+    def _is_seen(self, word: str, member: Meaning, name: Name) -> bool:
+        """Returns whether a production may see a member by its bare name: if its agent has it, or a class above or below that one."""
+        seen = {one.name for one in self.model.lineage(name.agent)}
+        family = {one for kind in member.owners if kind in self.model.agents for one in self.members.family(str(kind), word)}
+        return any(one in seen for kind in family for one in (kind, *self.model.above(kind)))
 
     # -- what may not be renamed
 
