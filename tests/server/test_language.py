@@ -556,6 +556,19 @@ def build(parameters: Parameters):
     walker.noise = parameters.noise
     return walker
 """
+CALLED = """def walk(angle=0, pace=1):
+    return angle * pace
+
+def other(pace):
+    return pace
+
+class Machine:
+    def __init__(self, pace):
+        self.quick = pace
+
+Machine(pace=3)
+walk(3, pace=2)
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -605,8 +618,12 @@ def other(number):
         (f"{SCOPES}print(sum(number for number in [1]))\n".replace("sum(number", "sum(num|ber"), "width", [16]),
         (KEYWORDS.replace("left:?left", "left:?le|ft", 1), "port", [6, 7, 8]),
         (KEYWORDS.replace('">?left"', '">?le|ft"'), "port", [6, 7, 8]),
-        (APERTURE.replace("    scan = ", "    sc|an = "), "looks", [284, 285, 287, 288, 291, 292, 355, 358, 359, 426]),
+        (WHOLE.replace("eyes = Eyes", "ey|es = Eyes").replace("print(", "goal.modify(look='eyes') or print("), "vision", [10, 14]),
         (FIELDS.replace("noise: float", "noi|se: float"), "sigma", [4, 14]),
+        (CALLED.replace("pace=1", "pa|ce=1"), "zzz", [1, 2, 12]),
+        (CALLED.replace("self, pace", "self, pa|ce"), "zzz", [8, 9, 11]),
+        (CALLED.replace("Machine(pace", "Machine(pa|ce"), "zzz", [8, 9, 11]),
+        (CALLED.replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
         ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
@@ -673,6 +690,22 @@ report(Base(), size=4)
         (APERTURE.replace("state:start", "sta|te:start", 1), "'state' is a slot of SGOMS, and keeps its name here"),
         (APERTURE.replace("b_DM.clear()", "b_D|M.clear()", 1), "'b_DM' is .*, and keeps its name here"),
         (KEYWORDS.replace("other=left", "other='?left'").replace("?left", "?le|ft", 1), "whether '.left' in line 8 is the same"),
+        *(
+            (f"{CALLED}{line}\n".replace("pace=1", "pa|ce=1"), f"'{shown}' in line 13 is the same")
+            for line, shown in (
+                ("partial(walk, pace=3)", "pace"),
+                ("walk(2, **{'pace': 5})", "pace"),
+                ("options['pace'] = 2; walk(2, **options)", "pace"),
+                ("for act in (walk, other): act(pace=2)", "pace"),
+                ("run(walk, pace=2)", "pace"),
+                ("{'go': walk}['go'](pace=2)", "pace"),
+                ("type(Machine())(pace=2)", "pace"),
+                ("dict(pace=2)", "pace"),
+            )
+        ),
+        (f"{CALLED}for act in (walk, other): act(pa|ce=2)\n", "where it is defined is not known"),
+        (f"{CALLED}setattr(one, name, 1)\nnames = ['quick']\n".replace("quick =", "qui|ck ="), "'quick' in line 14"),
+        (CALLED.replace("self.quick = pace", "self.quick = type(self)(pa|ce=2)"), "where it is defined is not known"),
         (POSTURES, "'extreme' is a slot of Motor, and keeps its name here"),
         (APERTURE.replace("when:now", "wh|en:now", 1), "'when' is a slot of SGOMS, and keeps its name here"),
         (APERTURE.replace("planning_unit:squeeze", "plan|ning_unit:squeeze", 1), "'planning_unit' is a slot of SGOMS, and keeps its name"),

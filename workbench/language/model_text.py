@@ -375,8 +375,9 @@ class ModelText:
             self._headed = self.method(f"{self._agent}.{self._blocks[-1].name}")
 
     def _open(self, number: int, token: CodeToken) -> None:
-        called = token.text == "(" and number > 0 and self._tokens[number - 1].kind == "name"
-        names = (*self._before(number - 1), self._tokens[number - 1].text) if called else ()
+        before = self._tokens[number - 1] if token.text == "(" and number > 0 else None
+        called = before is not None and (before.kind == "name" or before.text in (")", "]"))
+        names = (*self._before(number - 1), before.text if before.kind == "name" else "") if before is not None and called else ()
         head = self._text(self._statement) if called and number == self._statement + 2 else ""
         kind = head if head in ("def", "class") else "call" if called else ""
         self._brackets.append(_Bracket(kind=kind, names=names, part=self._new_part(number, names) if kind == "call" else None))

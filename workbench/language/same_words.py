@@ -124,12 +124,15 @@ class SameWords:
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
         strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
+        may_be_named = target.meaning.what == "member" or self._scopes.is_parameter(self.explicit.place(target.start))
+        if may_be_named and self._scopes.has_names_in_strings:
+            strings |= self._in_strings(_VALUE, word)
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
         if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
-        return same, unproven | (strings - found.keys())
+        return same, unproven | (strings - same)
 
     def _written(self, at: int) -> str:
         """Returns what stands around a position in a string without a space, such as `walker.speed`; empty if it is in none."""
@@ -260,6 +263,8 @@ class SameWords:
         """Returns the meaning of `width` in `look(width=1)`: a parameter of the function, a field of the class, or a slot."""
         if actr_answers.is_modified(name):
             return Meaning(what="slot")
+        if not self._is_known(name):
+            return None
         defined = self._python.define(self.explicit, self._path, name.start)
         if defined is not None and defined.at is None:
             return _LIBRARY
@@ -270,6 +275,13 @@ class SameWords:
         kinds = self.members.kinds(before[-1]) if before and before[-1].before else None
         is_method = bool(kinds) and all(":" in kind and not kind.endswith(":") for kind in kinds or ())
         return _LIBRARY if is_method else None  # a method of an object of the library knows no names of the text
+
+    def _is_known(self, argument: Name) -> bool:
+        """Returns whether it is known what a call with a keyword argument calls: no variable, which may be any function."""
+        if len(argument.called) > 1:
+            return True
+        called = next((one for one in reversed(self.model.names) if one.start < argument.start and (one.text,) == argument.called), None)
+        return called is not None and self._scopes.is_function_or_class(self.explicit.place(called.start))
 
     # -- which are the same
 
@@ -309,8 +321,7 @@ class SameWords:
         if not name.called or not name.keyword:
             return None if one.what == "member" and (name.before or self._is_seen(word, one, name)) else False
         if one.what == "local":
-            function = self._scopes.function_with_parameter(self.explicit.place(target.start))
-            return None if function in (name.called[-1], "__init__", "") else False
+            return None if self._scopes.is_parameter(self.explicit.place(target.start)) else False
         return False if one.what == "variable" else None
 
     def _is_seen(self, word: str, member: Meaning, name: Name) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Any, cast
 
 from parso.grammar import load_grammar
@@ -10,6 +11,7 @@ from parso.grammar import load_grammar
 Scope = tuple[str, str, tuple[int, int]]
 """The kind of a scope, its name, and where it begins."""
 _COMPREHENSIONS = ("comp_for", "sync_comp_for")
+_BY_NAME = ("getattr", "setattr", "hasattr", "delattr", "globals", "locals", "vars", "__dict__", "attrgetter")
 _FUNCTIONS = ("funcdef", "lambdef")
 
 
@@ -22,7 +24,7 @@ class Scopes:
 
     def __init__(self, code: str) -> None:
         self._module: Any = cast("Any", load_grammar()).parse(code)
-        self._leaves: dict[tuple[int, int], Any] = {leaf.start_pos: leaf for leaf in _names(self._module)}
+        self._leaves: dict[tuple[int, int], Any] = {leaf.start_pos: leaf for leaf in _leaves(self._module) if leaf.type == "name"}
         self._bound: dict[int, dict[str, Any]] = {}
         """For each scope, its names, and where each is bound first."""
         self._passed: dict[int, dict[str, bool]] = {}
@@ -55,13 +57,25 @@ class Scopes:
         leaf = self._leaves.get(place)
         return leaf is not None and bool(leaf.is_definition())
 
-    def function_with_parameter(self, place: tuple[int, int]) -> str | None:
-        """Returns the name of the function of which the plain name at a line and column is a parameter, empty for a `lambda`; else None."""
+    def is_parameter(self, place: tuple[int, int]) -> bool:
+        """Returns whether the plain name at a line and column is a parameter of a function."""
+        return self._type_of_binding(place) == "param"
+
+    def is_function_or_class(self, place: tuple[int, int]) -> bool:
+        """Returns whether the plain name at a line and column is that of a function or class, defined, imported, or Python's own."""
+        return self._type_of_binding(place) in ("funcdef", "classdef", "import_name", "import_from", "")
+
+    def _type_of_binding(self, place: tuple[int, int]) -> str:
+        """Returns by what kind of statement or parameter a plain name is bound first; empty if the text does not bind it."""
         leaf = self._leaves.get(place)
         scope = None if leaf is None else self._scope(leaf)
-        if leaf is None or scope is None or self._bound[id(scope)][leaf.value].parent.type != "param":
-            return None
-        return str(scope.name.value) if scope.type == "funcdef" else ""
+        definition = None if leaf is None or scope is None else self._bound[id(scope)][leaf.value].get_definition()
+        return "" if definition is None else str(definition.type)
+
+    @cached_property
+    def has_names_in_strings(self) -> bool:
+        """Returns whether the text may use strings as names: it has a call such as `f(**values)` or `getattr(one, name)`."""
+        return any(_hands_on_names(leaf) for leaf in _leaves(self._module))
 
     def is_import_path(self, place: tuple[int, int]) -> bool:
         """Returns whether the name at a line and column is that of another text: of a module, or of what is imported from it."""
@@ -115,12 +129,23 @@ class Scopes:
         return [*found, self._module]
 
 
-def _names(node: Any) -> Iterator[Any]:
-    """Yields the names of a tree."""
-    if node.type == "name":
+def _leaves(node: Any) -> Iterator[Any]:
+    """Yields the leaves of a tree."""
+    if not hasattr(node, "children"):
         yield node
     for child in getattr(node, "children", ()):
-        yield from _names(child)
+        yield from _leaves(child)
+
+
+def _hands_on_names(leaf: Any) -> bool:
+    """Returns whether a leaf begins `**values` in a call, or a call such as `getattr(one, name)` without the name in quotes."""
+    if leaf.type == "operator":
+        return leaf.value == "**" and leaf.parent.type == "argument"
+    if leaf.type != "name" or leaf.value not in _BY_NAME:
+        return False
+    call = leaf.get_next_sibling()
+    given = getattr(call.children[1], "children", ()) if call is not None and call.type == "trailer" else ()
+    return len(given) < 3 or given[2].type != "string"
 
 
 def _classes(node: Any) -> list[str]:
