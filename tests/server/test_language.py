@@ -569,6 +569,21 @@ class Machine:
 Machine(pace=3)
 walk(3, pace=2)
 """
+OVERRIDDEN = """class Walker:
+    def go(self, pace=1): pass
+
+class Runner(Walker):
+    def go(self, pace=2): pass
+
+def left(speed=1): pass
+def right(speed=2): pass
+
+class Machine:
+    def __init__(self, walker: Walker, turns):
+        walker.go(pace=3)
+        self.turn = left if turns else right
+        self.turn(speed=3)
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -681,7 +696,10 @@ report(Base(), size=4)
         (DOORWAY.replace("speed: Ann", "spe|ed: Ann"), "whether 'walker.speed' in line 43 is the same is not known"),
         (DOORWAY.replace("pose x:", "pose |x:"), "'x' is a slot of 'pose', and keeps its name here"),
         (DOORWAY.replace("def build", "def bu|ild"), "'build' is called to make the simulation"),
-        (APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'), "'b_context' is an attribute of SGOMS, and keeps its name here"),
+        (
+            APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'),
+            "'b_context' is an attribute of SGOMS, and keeps its name here",
+        ),
         (APERTURE.replace('motor="busy:', 'motor="bu|sy:', 1), "'busy' is defined in .*, and keeps its name here"),
         (APERTURE.replace('    answer = "', '    ans|wer = "', 1), "whether 'answer' in line 302 is the same is not known"),
         (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'planning_unit:squeeze' in line 301 is the same is not known"),
@@ -703,6 +721,9 @@ report(Base(), size=4)
                 ("dict(pace=2)", "pace"),
             )
         ),
+        (OVERRIDDEN.replace("pace=1", "pa|ce=1"), "'pace' in line 12 is the same"),
+        (OVERRIDDEN.replace("pace=2", "pa|ce=2"), "'pace' in line 12 is the same"),
+        (OVERRIDDEN.replace("speed=1", "sp|eed=1"), "'speed' in line 14 is the same"),
         (f"{CALLED}for act in (walk, other): act(pa|ce=2)\n", "where it is defined is not known"),
         (f"{CALLED}setattr(one, name, 1)\nnames = ['quick']\n".replace("quick =", "qui|ck ="), "'quick' in line 14"),
         (CALLED.replace("self.quick = pace", "self.quick = type(self)(pa|ce=2)"), "where it is defined is not known"),

@@ -96,8 +96,9 @@ def features_of(kind: str) -> tuple[Word, ...]:
 
 def slots_given(kind: type) -> set[str]:
     """Returns the slots that a class of the library gives to chunks, itself or by the buffers that its agents have."""
-    members = {type(one) for base in kind.__mro__ for one in vars(base).values()}
-    return {slot for one in {kind, *members} if issubclass(one, Model) for slot in slots_of(one)}
+    members = [one for base in kind.__mro__ for one in vars(base).values() if isinstance(one, Model)]
+    own = slots_of(kind) if issubclass(kind, Model) else ()
+    return {*own, *(slot for one in members for slot in slots_of(type(one)))}
 
 
 def is_called_by_library(kind: type, name: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import builtins
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -125,6 +125,10 @@ class PythonAnswers:
 
     def define(self, explicit: ExplicitText, path: str, at: int) -> Definition | None:
         """Returns where the name at a position is defined."""
+        return next(self.definitions(explicit, path, at), None)
+
+    def definitions(self, explicit: ExplicitText, path: str, at: int) -> Iterator[Definition]:
+        """Yields all places where the name at a position may be defined."""
         script = self._script(explicit.text, path)
         line, column = explicit.place(at)
         for one in script.goto(line, column, follow_imports=True, follow_builtin_imports=True):
@@ -133,13 +137,12 @@ class PythonAnswers:
             if one.module_path == self._folder / path:
                 position = explicit.position(one.line, one.column)
                 if position is not None:
-                    return Definition(path=path, at=position, name=one.name)
+                    yield Definition(path=path, at=position, name=one.name)
             elif one.module_path.is_relative_to(self._folder):
                 inside = one.module_path.relative_to(self._folder).as_posix()
-                return Definition(path=inside, line=one.line, name=one.name)
+                yield Definition(path=inside, line=one.line, name=one.name)
             else:
-                return Definition(path=None, line=one.line, name=one.name, module=one.module_name)
-        return None
+                yield Definition(path=None, line=one.line, name=one.name, module=one.module_name)
 
     def origin(self, explicit: ExplicitText, path: str, name: str) -> str:
         """Returns the module from which a name at the end of a text is imported; empty if it is not imported."""

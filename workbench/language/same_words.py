@@ -102,8 +102,8 @@ class SameWords:
         if meaning.what == "member":
             own = sorted(str(one) for one in meaning.owners if one in self.model.agents)
             if not own:
-                kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "")
-                raise LanguageError(f"'{word}' is defined in {kind.replace(':', '.').lstrip('.')}, and keeps its name here" if kind else unknown)
+                kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "").replace(":", ".").lstrip(".")
+                raise LanguageError(f"'{word}' is defined in {kind}, and keeps its name here" if kind else unknown)
             self._check_members(own[:1], word)
             if self._is_part(word, meaning):
                 what = "part"
@@ -265,16 +265,25 @@ class SameWords:
             return Meaning(what="slot")
         if not self._is_known(name):
             return None
-        defined = self._python.define(self.explicit, self._path, name.start)
-        if defined is not None and defined.at is None:
+        found = [one.at for one in self._python.definitions(self.explicit, self._path, name.start)]
+        if found and all(at is None for at in found):
             return _LIBRARY
-        other = None if defined is None else self.model.name_at(defined.at or 0)
-        if other is not None and other.text == name.text and not (other.keyword and other.called):
-            return self._of_name(other)
+        others = [self.model.name_at(at) for at in found if at is not None]
+        meanings = {self._of_name(one) for one in others if one is not None and one.text == name.text and not (one.keyword and one.called)}
+        if meanings:
+            replaced = any(one is not None and self._is_replaced(one) for one in others)
+            return None if replaced or None in found or len(meanings) > 1 else meanings.pop()
         before = [one for one in self.model.names if one.end <= name.start and (*one.before, one.text) == name.called]
         kinds = self.members.kinds(before[-1]) if before and before[-1].before else None
         is_method = bool(kinds) and all(":" in kind and not kind.endswith(":") for kind in kinds or ())
         return _LIBRARY if is_method else None  # a method of an object of the library knows no names of the text
+
+    def _is_replaced(self, parameter: Name) -> bool:
+        """Returns whether another class of the same members has the same method, with a parameter of the same name."""
+        owner, _, method = parameter.method.rpartition(".")
+        family = self.members.family(owner, method) - {owner} if owner and method != "__init__" else set[str]()
+        found = (self.model.agents[one].methods.get(method) for one in family)
+        return any(one is not None and parameter.text in one.parameters for one in found)
 
     def _is_known(self, argument: Name) -> bool:
         """Returns whether it is known what a call with a keyword argument calls: no variable, which may be any function."""
