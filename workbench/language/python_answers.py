@@ -155,7 +155,11 @@ class PythonAnswers:
 
     def kinds(self, explicit: ExplicitText, path: str, at: int) -> set[str] | None:
         """Returns the classes of the expression that ends at a position, those of others as `module:name`; None if they are not known."""
-        return self._kinds(self._script(explicit.text, path).infer(*explicit.place(at)), path)
+        return self.kinds_at(explicit, path, explicit.place(at))
+
+    def kinds_at(self, explicit: ExplicitText, path: str, place: tuple[int, int]) -> set[str] | None:
+        """Returns the classes of the expression that ends at a line and column of the explicit text, as `kinds` does."""
+        return self._kinds(self._script(explicit.text, path).infer(*place), path)
 
     def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:
         """Returns the classes of an expression at the end of a text, as `kinds` does."""

@@ -18,8 +18,8 @@ from workbench.language.model_text import ChunkText, Method, ModelText, Name, Pa
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
 
-_MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["']\s*:"""
-"""A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}."""
+_MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["'](?:\s*:|\]\s*=(?!=))"""
+"""A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}, values["speed"] = 1."""
 _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
 _STRINGS = {"member": _MEMBER, "slot": _SLOT, "variable": r"\?({0})\b"}
@@ -124,8 +124,7 @@ class SameWords:
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
         strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
-        may_be_named = target.meaning.what == "member" or self._scopes.is_parameter(self.explicit.place(target.start))
-        if may_be_named and self._scopes.has_names_in_strings:
+        if self._may_be_in_strings(word, target):
             strings |= self._in_strings(_VALUE, word)
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
@@ -133,6 +132,18 @@ class SameWords:
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
         return same, unproven | (strings - same)
+
+    def _may_be_in_strings(self, word: str, target: WordPlace) -> bool:
+        """Returns whether a name may be computed: that of a parameter for `f(**values)`, or of a member for `getattr(one, name)`."""
+        assert target.meaning is not None
+        if target.meaning.what != "member":
+            function = self._scopes.function_with_parameter(self.explicit.place(target.start))
+            called = self._scopes.called_with_names
+            return function is not None and bool(called if function in ("", "__init__") else called & {"", function})
+        own = [str(kind) for kind in target.meaning.owners if kind in self.model.agents]
+        family = {one for kind in own for one in self.members.family(kind, word)}
+        asked = (self._python.kinds_at(self.explicit, self._path, place) for place in self._scopes.asked_by_name)
+        return any(kinds is None or kinds & {*family, *(self.members.above_all(family) or kinds)} for kinds in asked)
 
     def _written(self, at: int) -> str:
         """Returns what stands around a position in a string without a space, such as `walker.speed`; empty if it is in none."""
@@ -330,7 +341,7 @@ class SameWords:
         if not name.called or not name.keyword:
             return None if one.what == "member" and (name.before or self._is_seen(word, one, name)) else False
         if one.what == "local":
-            return None if self._scopes.is_parameter(self.explicit.place(target.start)) else False
+            return False if self._scopes.function_with_parameter(self.explicit.place(target.start)) is None else None
         return False if one.what == "variable" else None
 
     def _is_seen(self, word: str, member: Meaning, name: Name) -> bool:

@@ -11,7 +11,7 @@ from parso.grammar import load_grammar
 Scope = tuple[str, str, tuple[int, int]]
 """The kind of a scope, its name, and where it begins."""
 _COMPREHENSIONS = ("comp_for", "sync_comp_for")
-_BY_NAME = ("getattr", "setattr", "hasattr", "delattr", "globals", "locals", "vars", "__dict__", "attrgetter")
+_BY_NAME = ("getattr", "setattr", "hasattr", "delattr", "vars")
 _FUNCTIONS = ("funcdef", "lambdef")
 
 
@@ -57,9 +57,12 @@ class Scopes:
         leaf = self._leaves.get(place)
         return leaf is not None and bool(leaf.is_definition())
 
-    def is_parameter(self, place: tuple[int, int]) -> bool:
-        """Returns whether the plain name at a line and column is a parameter of a function."""
-        return self._type_of_binding(place) == "param"
+    def function_with_parameter(self, place: tuple[int, int]) -> str | None:
+        """Returns the name of the function of which the plain name at a line and column is a parameter, empty for a `lambda`; else None."""
+        if self._type_of_binding(place) != "param":
+            return None
+        scope = self._scope(self._leaves[place])
+        return str(scope.name.value) if scope.type == "funcdef" else ""
 
     def is_function_or_class(self, place: tuple[int, int]) -> bool:
         """Returns whether the plain name at a line and column is that of a function or class, defined, imported, or Python's own."""
@@ -73,9 +76,25 @@ class Scopes:
         return "" if definition is None else str(definition.type)
 
     @cached_property
-    def has_names_in_strings(self) -> bool:
-        """Returns whether the text may use strings as names: it has a call such as `f(**values)` or `getattr(one, name)`."""
-        return any(_hands_on_names(leaf) for leaf in _leaves(self._module))
+    def called_with_names(self) -> set[str]:
+        """The functions and classes that are called with computed names, as in `f(**values)`; empty for one that is not known."""
+        stars = (
+            leaf for leaf in _leaves(self._module) if leaf.type == "operator" and leaf.value == "**" and leaf.parent.type == "argument"
+        )
+        called = (leaf.search_ancestor("trailer", "classdef", "decorator").get_first_leaf().get_previous_leaf() for leaf in stars)
+        return {leaf.value if leaf.type == "name" and self._is_called_itself(leaf) else "" for leaf in called}
+
+    @cached_property
+    def asked_by_name(self) -> list[tuple[int, int]]:
+        """Where the expressions end of which attributes are asked for by computed names, as in `getattr(one, name)`."""
+        calls = (leaf.get_next_sibling() for leaf in self._leaves.values() if leaf.value in _BY_NAME)
+        given = (call.children[1] for call in calls if call is not None and call.type == "trailer" and call.children[0] == "(")
+        computed = (one for one in given if one.type != "arglist" or one.children[2].type != "string")
+        return [(one.children[0] if one.type == "arglist" else one).get_last_leaf().end_pos for one in computed]
+
+    def _is_called_itself(self, leaf: Any) -> bool:
+        """Returns whether a name that is called is that of an attribute, a function or a class, and no variable."""
+        return not _is_plain(leaf) or self.is_function_or_class(leaf.start_pos)
 
     def is_import_path(self, place: tuple[int, int]) -> bool:
         """Returns whether the name at a line and column is that of another text: of a module, or of what is imported from it."""
@@ -135,17 +154,6 @@ def _leaves(node: Any) -> Iterator[Any]:
         yield node
     for child in getattr(node, "children", ()):
         yield from _leaves(child)
-
-
-def _hands_on_names(leaf: Any) -> bool:
-    """Returns whether a leaf begins `**values` in a call, or a call such as `getattr(one, name)` without the name in quotes."""
-    if leaf.type == "operator":
-        return leaf.value == "**" and leaf.parent.type == "argument"
-    if leaf.type != "name" or leaf.value not in _BY_NAME:
-        return False
-    call = leaf.get_next_sibling()
-    given = getattr(call.children[1], "children", ()) if call is not None and call.type == "trailer" else ()
-    return len(given) < 3 or given[2].type != "string"
 
 
 def _classes(node: Any) -> list[str]:
