@@ -639,6 +639,7 @@ def other(number):
         (CALLED.replace("self, pace", "self, pa|ce"), "zzz", [8, 9, 11]),
         (CALLED.replace("Machine(pace", "Machine(pa|ce"), "zzz", [8, 9, 11]),
         (CALLED.replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
+        (f"{CALLED}class Other(ACTR): pass\nOther(pace=1)\n".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         (f"{CALLED}walk(**{{'pace': 2}})".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         (f"{CALLED}class Other: pass\nsetattr(Other(), 'quick' or name, 1)\n".replace("quick =", "qui|ck ="), "zzz", [9]),
         ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),

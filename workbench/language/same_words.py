@@ -341,7 +341,10 @@ class SameWords:
         if not name.called or not name.keyword:
             return None if one.what == "member" and (name.before or self._is_seen(word, one, name)) else False
         if one.what == "local":
-            return False if self._scopes.function_with_parameter(self.explicit.place(target.start)) is None else None
+            function = self._scopes.function_with_parameter(self.explicit.place(target.start))
+            made = self.model.agents.get(name.called[-1]) if len(name.called) == 1 and function != "__init__" else None
+            makes = made is not None and not any("__init__" in one.methods for one in self.model.lineage(made.name))
+            return False if function is None or makes else None  # a class that only the library's `__init__` makes calls no other function
         return False if one.what == "variable" else None
 
     def _is_seen(self, word: str, member: Meaning, name: Name) -> bool:
