@@ -4,7 +4,7 @@ The agent walks its body towards a doorway 7 m away. Every 100 ms it looks: the 
 names. This raw view bypasses vision; aperture_passage.py uses a vision module instead.
 It finds the nearest edges to the left and to the right of the middle of the screen, and computes the width of the gap
 from their distances and angles. At 1.5 m it decides: a gap narrower than 1.3 times its shoulders is passed sideways (Warren
-and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it turns back and stops.
+and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it stops, and the run ends as it begins to turn back.
 
 What to expect
 --------------

@@ -147,10 +147,11 @@ export function isPresent(notice) {
 
 let ownNotices = 0;
 
-/** Shows the user a problem found by the page itself, or something else; optionally with an action {text, work}, which can be taken once. */
-export function complain(text, level = "error", action = null) {
+/** Shows the user a problem found by the page itself, or something else; optionally with an action {text, work}, which can be taken once, and
+ * the line {file, line} that it is about. */
+export function complain(text, level = "error", action = null, { file = null, line = null } = {}) {
   ownNotices -= 1;
-  addNotices([{ number: ownNotices, level, text, file: null, line: null, detail: "", action }]);
+  addNotices([{ number: ownNotices, level, text, file, line, detail: "", action }]);
 }
 
 /** Takes the action of a notice, and removes the notice: what it says may no longer be true. */

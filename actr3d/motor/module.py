@@ -86,6 +86,8 @@ class Motor(WithParameters, Port):
         ParameterError: If a parameter is invalid.
     """
 
+    _slots = frozenset({"posture", "end", "extreme", *SIZES})
+
     @named_parameters
     def __init__(
         self,

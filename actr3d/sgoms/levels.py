@@ -45,6 +45,7 @@ class Level(Buffer):
         key: The level: the slot of the name, and the kind of trace events.
     """
 
+    _slots = frozenset({"method", "operator", "state"})
     _dropped = "ended"
     """The traced end of an activity that is cleared or replaced before its state is «finished»."""
 

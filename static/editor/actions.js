@@ -13,7 +13,8 @@ async function answered(document, ask, name) {
   try {
     return await askAbout(document.state, ask, document.state.selection.main.head, name);
   } catch (error) {
-    complain(error.message);
+    const line = / in line (\d+)/.exec(error.message);
+    complain(error.message, "error", null, line ? { file: document.path, line: Number(line[1]) } : {});
     return null;
   }
 }

@@ -72,7 +72,7 @@ function Row({ run, list, number, now, toggle, open }) {
       if (!row.current.contains(document.activeElement)) return;
       const rows = [...row.current.parentElement.querySelectorAll("[data-run]")];
       const at = rows.indexOf(row.current);
-      (rows[at + 1] ?? rows[at - 1])?.querySelector("input").focus({ preventScroll: true });
+      (rows[at + 1] ?? rows[at - 1] ?? row.current.closest(".runs")).querySelector("input").focus(); // without a row, the search
     },
     [],
   );

@@ -185,6 +185,17 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     expect(page.locator(".cm-activeLine")).to_have_text(re.compile("^from actr3d.vision import"))
 
 
+def test_a_name_that_is_not_renamed_leads_to_the_line_of_which_it_is_not_known(opened: Callable[[str], Page]) -> None:
+    page = opened("class Box:\n    def show(self): pass\n\ndef report(one):\n    one.show()\n")
+    at_end_of(page, "def show(self): pass")
+    for _ in range(len("(self): pass")):
+        page.keyboard.press("ArrowLeft")
+    page.keyboard.press("F2")
+    expect(page.locator(".toast")).to_contain_text("whether 'show' in line 5 is the same is not known")
+    page.locator(".toast").get_by_role("button", name=":5").click()
+    expect(page.locator(".cm-activeLine")).to_have_text(re.compile("one.show"))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "piece",

@@ -208,6 +208,32 @@ def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, 
     expect(rows).to_have_count(1)
 
 
+def test_after_the_only_row_was_deleted_by_keys_the_search_has_the_focus(page: Page, workbench: Served, recordings: Path) -> None:
+    name = recorded(workbench, "counting.py")
+    open_tab(page, "Runs")
+    page.get_by_label("Search recordings").fill(name[-4:])
+    expect(page.locator("tr[data-run]")).to_have_count(1)
+    page.keyboard.press("Shift")  # from now on by keys
+    row(page, name).locator("input").focus()
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Delete", exact=True)).to_be_visible()
+    page.keyboard.press("Delete")
+    expect(page.get_by_role("dialog").get_by_role("button", name="Cancel")).to_be_focused()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("No recording has all these words.")).to_be_visible()
+    expect(page.get_by_label("Search recordings")).to_be_focused()
+    page.locator(".toast").get_by_role("button", name="Restore").focus()
+    page.keyboard.press("Enter")
+    expect(row(page, name)).to_be_visible()
+    expect(page.get_by_label("Search recordings")).to_be_focused()
+    row(page, name).locator("input").focus()
+    page.keyboard.press("Space")
+    page.keyboard.press("Delete")
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    expect(row(page, name)).to_have_count(0)
+
+
 def show_copies(page: Page, workbench: Served, recordings: Path, called: str) -> list[Path]:
     """Shows 60 recordings in the list, copies of one, and no others; returns them, the oldest first."""
     original = recordings / f"{recorded(workbench, 'counting.py')}.sqlite"
@@ -243,6 +269,7 @@ def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, work
     page.keyboard.press("Enter")
     expect(row(page, order[5])).to_have_count(0)
     expect(row(page, order[6]).locator("input")).to_be_focused()
+    expect(row(page, order[6]).locator("input")).to_be_in_viewport()
     page.get_by_label("Search recordings").focus()
     for copy in copies:
         copy.unlink(missing_ok=True)

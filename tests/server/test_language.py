@@ -528,6 +528,62 @@ class Whole(ACTR):
     def look(goal="task", eyes="first:4"):
         print(self.seen)
 """
+KEYWORDS = """from actr3d.actr import *
+
+class Walker(ACTR):
+    goal = Buffer()
+    vision = Vision(goal)
+    def look(goal="left:?left"):
+        vision.request("feature:opening", width=2, left=">?left")
+        goal.modify(other=left)
+    def again(goal="left:?left"):
+        vision.request("feature:opening", left="?left")
+        print("?left")
+"""
+FIELDS = """from actr3d.actr import *
+
+class Parameters:
+    noise: float = 1
+
+class Walker(ACTR):
+    goal = Buffer()
+    def look(goal="look"):
+        print(noise)
+
+def build(parameters: Parameters):
+    walker = Walker()
+    print(walker.goal)
+    walker.noise = parameters.noise
+    return walker
+"""
+CALLED = """def walk(angle=0, pace=1):
+    return angle * pace
+
+def other(pace):
+    return pace
+
+class Machine:
+    def __init__(self, pace):
+        self.quick = pace
+
+Machine(pace=3)
+walk(3, pace=2)
+"""
+OVERRIDDEN = """class Walker:
+    def go(self, pace=1): pass
+
+class Runner(Walker):
+    def go(self, pace=2): pass
+
+def left(speed=1): pass
+def right(speed=2): pass
+
+class Machine:
+    def __init__(self, walker: Walker, turns):
+        walker.go(pace=3)
+        self.turn = left if turns else right
+        self.turn(speed=3)
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -573,6 +629,21 @@ def other(number):
         (SCOPES.replace("self, size", "self, si|ze"), "width", [9, 10]),
         (SCOPES.replace("{number:", "{num|ber:"), "width", [14]),
         (SCOPES.replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
+        (f"{SCOPES}print(sum(number for number in [1]))\n".replace("other(number", "other(num|ber"), "width", [12, 14, 15]),
+        (f"{SCOPES}print(sum(number for number in [1]))\n".replace("sum(number", "sum(num|ber"), "width", [16]),
+        (KEYWORDS.replace("left:?left", "left:?le|ft", 1), "port", [6, 7, 8]),
+        (KEYWORDS.replace('">?left"', '">?le|ft"'), "port", [6, 7, 8]),
+        (WHOLE.replace("eyes = Eyes", "ey|es = Eyes").replace("print(", "goal.modify(look='eyes') or print("), "vision", [10, 14]),
+        (FIELDS.replace("noise: float", "noi|se: float"), "sigma", [4, 14]),
+        (CALLED.replace("pace=1", "pa|ce=1"), "zzz", [1, 2, 12]),
+        (CALLED.replace("self, pace", "self, pa|ce"), "zzz", [8, 9, 11]),
+        (CALLED.replace("Machine(pace", "Machine(pa|ce"), "zzz", [8, 9, 11]),
+        (CALLED.replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
+        (f"{CALLED}class Other(ACTR): pass\nOther(pace=1)\n".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
+        (f"{CALLED}walk(**{{'pace': 2}})".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
+        (f"{CALLED}class Other: pass\nsetattr(Other(), 'quick' or name, 1)\n".replace("quick =", "qui|ck ="), "zzz", [9]),
+        ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
+        ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
 )
 def test_a_name_is_renamed_in_all_its_places(ask: Asked, text: str, name: str, lines: list[int] | None) -> None:
@@ -581,6 +652,14 @@ def test_a_name_is_renamed_in_all_its_places(ask: Asked, text: str, name: str, l
     assert changed == (lines or [number for number, line in enumerate(plain.splitlines(), 1) if re.search(r"\bnears\b", line)])
 
 
+POSTURES = """from actr3d.actr import *
+import actr3d.motor as am
+
+class Walker(ACTR):
+    felt = Buffer()
+    motor = am.Motor(felt)
+    def feel(felt="posture:? ext|reme:maximum"): pass
+"""
 REPORTED = """from actr3d.actr import *
 
 class Base(ACTR):
@@ -617,15 +696,49 @@ report(Base(), size=4)
         (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
         (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),
         (DOORWAY.replace('seen=None, eye="busy', 'seen=None, eye="bu|sy'), "'busy' is defined in .*, and keeps its name here"),
-        (DOORWAY.replace("speed: Ann", "spe|ed: Ann"), "whether 'speed' in line 43 is the same is not known"),
+        (DOORWAY.replace("speed: Ann", "spe|ed: Ann"), "whether 'walker.speed' in line 43 is the same is not known"),
         (DOORWAY.replace("pose x:", "pose |x:"), "'x' is a slot of 'pose', and keeps its name here"),
         (DOORWAY.replace("def build", "def bu|ild"), "'build' is called to make the simulation"),
-        (APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'), "where it is defined is not known"),
+        (
+            APERTURE.replace('b_context="way:open"', 'b_con|text="way:open"'),
+            "'b_context' is an attribute of SGOMS, and keeps its name here",
+        ),
         (APERTURE.replace('motor="busy:', 'motor="bu|sy:', 1), "'busy' is defined in .*, and keeps its name here"),
         (APERTURE.replace('    answer = "', '    ans|wer = "', 1), "whether 'answer' in line 302 is the same is not known"),
-        (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'squeeze' in line 301 is the same is not known"),
+        (APERTURE.replace("    squeeze =", "    squ|eeze ="), "whether 'planning_unit:squeeze' in line 301 is the same is not known"),
         (APERTURE.replace("    pass_doorway =", "    pass_|doorway ="), "whether 'pass_doorway' in line 440 is the same is not known"),
         (APERTURE.replace("self.judged", "self.jud|ged", 1), "whether 'judged' in line 648 is the same is not known"),
+        (APERTURE.replace("state:start", "sta|te:start", 1), "'state' is a slot of SGOMS, and keeps its name here"),
+        (APERTURE.replace("b_DM.clear()", "b_D|M.clear()", 1), "'b_DM' is .*, and keeps its name here"),
+        (KEYWORDS.replace("other=left", "other='?left'").replace("?left", "?le|ft", 1), "whether '.left' in line 8 is the same"),
+        *(
+            (f"{CALLED}{line}\n".replace("pace=1", "pa|ce=1"), f"'{shown}' in line 13 is the same")
+            for line, shown in (
+                ("partial(walk, pace=3)", "pace"),
+                ("walk(2, **{'pace': 5})", "pace"),
+                ("options['pace'] = 2; walk(2, **options)", "pace"),
+                ("for act in (walk, other): act(pace=2)", "pace"),
+                ("run(walk, pace=2)", "pace"),
+                ("{'go': walk}['go'](pace=2)", "pace"),
+                ("type(Machine())(pace=2)", "pace"),
+                ("dict(pace=2)", "pace"),
+            )
+        ),
+        (OVERRIDDEN.replace("pace=1", "pa|ce=1"), "'pace' in line 12 is the same"),
+        (OVERRIDDEN.replace("pace=2", "pa|ce=2"), "'pace' in line 12 is the same"),
+        (OVERRIDDEN.replace("speed=1", "sp|eed=1"), "'speed' in line 14 is the same"),
+        (f"{CALLED}for act in (walk, other): act(pa|ce=2)\n", "where it is defined is not known"),
+        (f"{CALLED}setattr(Machine(1), name, 1)\nnames = ['quick']\n".replace("quick =", "qui|ck ="), "'quick' in line 14"),
+        (f"{CALLED}setattr(one, name, 1)\nnames = ['quick']\n".replace("quick =", "qui|ck ="), "'quick' in line 14"),
+        (CALLED.replace("self.quick = pace", "self.quick = type(self)(pa|ce=2)"), "where it is defined is not known"),
+        (POSTURES, "'extreme' is a slot of Motor, and keeps its name here"),
+        (APERTURE.replace("when:now", "wh|en:now", 1), "'when' is a slot of SGOMS, and keeps its name here"),
+        (APERTURE.replace("planning_unit:squeeze", "plan|ning_unit:squeeze", 1), "'planning_unit' is a slot of SGOMS, and keeps its name"),
+        (APERTURE.replace('state="recalling"', 'sta|te="recalling"'), "'state' is a slot of SGOMS, and keeps its name here"),
+        (APERTURE.replace("b_unit_task=", "b_unit|_task=", 1), "'b_unit_task' is defined in actr3d.sgoms.agent, and keeps its name here"),
+        (FAN.replace("    profile =", "    pro|file ="), "'profile' is defined in actr3d.actr.kernel.model, and keeps its name here"),
+        ("class Box:\n    def __en|ter__(self): pass\n", "'__enter__' has a meaning in Python, and keeps its name"),
+        (FAN.replace("None", "No|ne", 1), "there is no name here"),
         (WHOLE.replace("print(self.seen)", "print(getattr(self, 'seen'))").replace("self.seen =", "self.se|en ="), "'seen' in line 15"),
         (PAIRED.replace("def start", "def sta|rt"), "'start' is defined in .*, and keeps its name"),
     ],

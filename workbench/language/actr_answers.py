@@ -49,12 +49,12 @@ def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | 
         return None
     word = re.search(r"\S*$", text.text[: at - text.start])
     assert word is not None
-    slot = _SLOT.match(word[0])
+    slot = None if text.slot else _SLOT.match(word[0])
     value = slot[2] if slot else word[0]
     sign = _SIGN.search(value)
     assert sign is not None
     start = at - len(sign[2]) - ("?" in sign[1])
-    words = _words_of_part(model, text)
+    words = [] if text.slot else _words_of_part(model, text)
     if words:
         used = {
             piece.text for one in _elsewhere(model.chunks_of(text.part, text.agent), at) if one.kind == text.kind for piece in one.pieces
@@ -65,8 +65,8 @@ def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | 
     if "?" in sign[1]:
         return Completion(start=start, items=variables)
     place = len(text.text[: word.start()].split())
-    values = [*_values(model, text, slot[1] if slot else str(place), at, attributes), *variables]
-    if slot or sign[1]:
+    values = [*_values(model, text, slot[1] if slot else text.slot or str(place), at, attributes), *variables]
+    if slot or text.slot or sign[1]:
         return Completion(start=start, items=distinct(values))
     named = any(":" in one for one in text.text[: word.start()].split())
     slots = _slots(model, text, at, attributes)

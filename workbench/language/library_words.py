@@ -11,6 +11,8 @@ from functools import cache
 from actr3d import actr, world
 from actr3d.actr.declarative.activation import MemorySubModule
 from actr3d.actr.kernel.hooks import is_hook
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.lint.slot_inference import slots_of
 from actr3d.actr.procedural.production import defaults_of
 from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
@@ -90,6 +92,13 @@ def answers_of(kind: str) -> tuple[Word, ...]:
 def features_of(kind: str) -> tuple[Word, ...]:
     """Returns the features that a module searches for, which its requests and chunks name in the slot `feature`."""
     return features() if kind == "Vision" else ()
+
+
+def slots_given(kind: type) -> set[str]:
+    """Returns the slots that a class of the library gives to chunks, itself or by the buffers that its agents have."""
+    members = [one for base in kind.__mro__ for one in vars(base).values() if isinstance(one, Model)]
+    own = slots_of(kind) if issubclass(kind, Model) else ()
+    return {*own, *(slot for one in members for slot in slots_of(type(one)))}
 
 
 def is_called_by_library(kind: type, name: str) -> bool:

@@ -85,6 +85,8 @@ class ChunkText:
     method: str
     text: str
     start: int
+    slot: str = ""
+    """The slot whose value it is: `left` in `request("feature:opening", left="?left")`; empty if it names its slots."""
 
     @property
     def end(self) -> int:
@@ -94,6 +96,8 @@ class ChunkText:
     @cached_property
     def slots(self) -> tuple[SlotName, ...]:
         """The names of slots in it."""
+        if self.slot:
+            return ()
         found = ((word, _SLOT.match(word[0])) for word in _WORD.finditer(self.text))
         return tuple(SlotName(text=slot[1], start=self.start + word.start()) for word, slot in found if slot and slot[1][0] != "?")
 
@@ -104,8 +108,8 @@ class ChunkText:
 
     def _pieces(self) -> Iterator[Piece]:
         for place, word in enumerate(_WORD.finditer(self.text)):
-            slot = _SLOT.match(word[0])
-            name, at = (slot[1], slot.end()) if slot else (str(place), 0)
+            slot = None if self.slot else _SLOT.match(word[0])
+            name, at = (slot[1], slot.end()) if slot else (self.slot or str(place), 0)
             if name[0] == "?":
                 yield Piece(sign="?", text=name[1:], start=self.start + word.start() + 1, slot=name)
             for piece in _PIECE.finditer(word[0], at):
@@ -371,8 +375,9 @@ class ModelText:
             self._headed = self.method(f"{self._agent}.{self._blocks[-1].name}")
 
     def _open(self, number: int, token: CodeToken) -> None:
-        called = token.text == "(" and number > 0 and self._tokens[number - 1].kind == "name"
-        names = (*self._before(number - 1), self._tokens[number - 1].text) if called else ()
+        before = self._tokens[number - 1] if token.text == "(" and number > 0 else None
+        called = before is not None and (before.kind == "name" or before.text in (")", "]"))
+        names = (*self._before(number - 1), before.text if before.kind == "name" else "") if before is not None and called else ()
         head = self._text(self._statement) if called and number == self._statement + 2 else ""
         kind = head if head in ("def", "class") else "call" if called else ""
         self._brackets.append(_Bracket(kind=kind, names=names, part=self._new_part(number, names) if kind == "call" else None))
@@ -396,12 +401,14 @@ class ModelText:
                 return
             if bracket.kind == "call":
                 names = bracket.names
-                if len(names) > 1 and names[-1] in (*GIVERS, *READERS) and bracket.place == 0 and not bracket.keyword:
-                    self._add_text("request" if names[-1] in READERS else "chunk", names[-2], token)
+                reads = names[-1] in READERS
+                if len(names) > 1 and (reads if bracket.keyword else bracket.place == 0 and (reads or names[-1] in GIVERS)):
+                    self._add_text("request" if reads else "chunk", names[-2], token, bracket.keyword)
                 return
 
-    def _add_text(self, kind: str, part: str, token: CodeToken) -> None:
-        self.texts.append(ChunkText(kind=kind, part=part, agent=self._agent, method=self._method, text=token.text, start=token.start))
+    def _add_text(self, kind: str, part: str, token: CodeToken, slot: str = "") -> None:
+        own, text = self._method, token.text
+        self.texts.append(ChunkText(kind=kind, part=part, agent=self._agent, method=own, text=text, start=token.start, slot=slot))
 
     @property
     def _agent(self) -> str:

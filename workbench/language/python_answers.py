@@ -5,7 +5,7 @@ from __future__ import annotations
 import builtins
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,7 +19,7 @@ from jedi.inference.compiled.subprocess import InferenceStateSameProcess
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
-from workbench.language.library_words import is_called_by_library
+from workbench.language.library_words import is_called_by_library, slots_given
 
 settings.auto_import_modules = []
 settings.allow_unsafe_interpreter_executions = False
@@ -125,6 +125,10 @@ class PythonAnswers:
 
     def define(self, explicit: ExplicitText, path: str, at: int) -> Definition | None:
         """Returns where the name at a position is defined."""
+        return next(self.definitions(explicit, path, at), None)
+
+    def definitions(self, explicit: ExplicitText, path: str, at: int) -> Iterator[Definition]:
+        """Yields all places where the name at a position may be defined."""
         script = self._script(explicit.text, path)
         line, column = explicit.place(at)
         for one in script.goto(line, column, follow_imports=True, follow_builtin_imports=True):
@@ -133,13 +137,12 @@ class PythonAnswers:
             if one.module_path == self._folder / path:
                 position = explicit.position(one.line, one.column)
                 if position is not None:
-                    return Definition(path=path, at=position, name=one.name)
+                    yield Definition(path=path, at=position, name=one.name)
             elif one.module_path.is_relative_to(self._folder):
                 inside = one.module_path.relative_to(self._folder).as_posix()
-                return Definition(path=inside, line=one.line, name=one.name)
+                yield Definition(path=inside, line=one.line, name=one.name)
             else:
-                return Definition(path=None, line=one.line, name=one.name, module=one.module_name)
-        return None
+                yield Definition(path=None, line=one.line, name=one.name, module=one.module_name)
 
     def origin(self, explicit: ExplicitText, path: str, name: str) -> str:
         """Returns the module from which a name at the end of a text is imported; empty if it is not imported."""
@@ -152,7 +155,11 @@ class PythonAnswers:
 
     def kinds(self, explicit: ExplicitText, path: str, at: int) -> set[str] | None:
         """Returns the classes of the expression that ends at a position, those of others as `module:name`; None if they are not known."""
-        return self._kinds(self._script(explicit.text, path).infer(*explicit.place(at)), path)
+        return self.kinds_at(explicit, path, explicit.place(at))
+
+    def kinds_at(self, explicit: ExplicitText, path: str, place: tuple[int, int]) -> set[str] | None:
+        """Returns the classes of the expression that ends at a line and column of the explicit text, as `kinds` does."""
+        return self._kinds(self._script(explicit.text, path).infer(*place), path)
 
     def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:
         """Returns the classes of an expression at the end of a text, as `kinds` does."""
@@ -161,22 +168,25 @@ class PythonAnswers:
 
     def _kinds(self, found: list[Any], path: str) -> set[str] | None:
         own = self._folder / path
-        names = [(one, (one.full_name or "").removeprefix(one.module_name).removeprefix(".")) for one in found]
-        return {name if one.module_path == own else f"{one.module_name}:{name}" for one, name in names} or None
+        names = [(one, one.module_name or "") for one in found]  # what jedi makes up itself, such as a named tuple, is in no module
+        names = [(one, module, (one.full_name or one.name).removeprefix(module).removeprefix(".")) for one, module in names]
+        return {name if one.module_path == own else f"{module}:{name}" for one, module, name in names} or None
 
     @staticmethod
     def ancestors(kinds: set[str] | None) -> set[str] | None:
         """Returns classes of other texts, as `kinds` names them, and all from which these inherit; None if they are not known."""
         found: set[str] = set()
         for kind in kinds or {""}:
-            module, _, name = kind.partition(":")
-            # The library itself may be imported; its classes are those that a text can inherit from.
-            source = import_module(module) if module.startswith("actr3d.") and find_spec(module) else sys.modules.get(module)
-            one = getattr(source, name, None)
-            if not isinstance(one, type):
+            one = _class(kind)
+            if one is None:
                 return None
             found |= {f"{base.__module__}:{base.__qualname__}" for base in one.__mro__}
         return found
+
+    def slots_given(self, explicit: ExplicitText, path: str, expression: str) -> set[str]:
+        """Returns the slots that the library gives to the chunks of the class that an expression names, or of an object of it."""
+        kinds = [_class(kind) for kind in self.kinds_of(explicit, path, expression) or ()]
+        return {slot for kind in kinds if kind is not None for slot in slots_given(kind)}
 
     def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
         """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
@@ -220,6 +230,15 @@ class PythonExpressions:
         """Returns whether an expression is True or False."""
         script, line, column = self._after(expression)
         return any(one.full_name == "builtins.bool" for one in script.infer(line, column - 1))
+
+
+def _class(kind: str) -> type | None:
+    """Returns a class of another text, as `PythonAnswers.kinds` names it; None if it is not known."""
+    module, _, name = kind.partition(":")
+    # The library itself may be imported; its classes are those that a text can inherit from.
+    source = import_module(module) if module.startswith("actr3d.") and find_spec(module) else sys.modules.get(module)
+    found = getattr(source, name, None)
+    return found if isinstance(found, type) else None
 
 
 def _public_names(before: str) -> list[str] | None:

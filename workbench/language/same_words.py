@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import keyword
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,15 +14,17 @@ from workbench.language import actr_answers
 from workbench.language.answers import LanguageError, Renaming
 from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
-from workbench.language.model_text import ChunkText, Method, ModelText, Name, Piece, SlotName
+from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, SlotName
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
 
-_MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["']\s*:"""
-"""A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}."""
+_MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["'](?:\s*:|\]\s*=(?!=))"""
+"""A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}, values["speed"] = 1."""
 _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
+_STRINGS = {"member": _MEMBER, "slot": _SLOT, "variable": r"\?({0})\b"}
 _VALUE = r"""["']({0})["']"""
+_PLANNING_UNITS = {"actr3d.sgoms.units:Ordered", "actr3d.sgoms.units:Situated"}
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -81,7 +84,7 @@ class SameWords:
             if found is None:
                 raise LanguageError("there is no name here that can be renamed")
             word, start = found.text, found.start
-        elif name is not None:
+        elif name is not None and not keyword.iskeyword(name.text):
             word, start = name.text, name.start
             self._check_name(name)
         else:
@@ -89,6 +92,8 @@ class SameWords:
         target = next(one for one in self._words(word) if one.start == start)
         meaning = target.meaning
         unknown = f"'{word}' cannot be renamed: where it is defined is not known"
+        if meaning is None and name is not None and not name.before and not (name.keyword and name.called):
+            self._check_members([one.name for one in self.model.lineage(name.agent)], word)
         if meaning is None or meaning == _LIBRARY:
             raise LanguageError(unknown)
         if meaning.what == "slot":
@@ -97,17 +102,16 @@ class SameWords:
         if meaning.what == "member":
             own = sorted(str(one) for one in meaning.owners if one in self.model.agents)
             if not own:
-                kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "")
-                raise LanguageError(f"'{word}' is defined in {kind.replace(':', '.')}, and keeps its name here" if kind else unknown)
-            of_library = self.members.library(own[0], word)
-            if of_library:
-                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
+                kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "").replace(":", ".").lstrip(".")
+                raise LanguageError(f"'{word}' is defined in {kind}, and keeps its name here" if kind else unknown)
+            self._check_members(own[:1], word)
             if self._is_part(word, meaning):
                 what = "part"
         starts, unproven = self.places(word, start)
         if unproven:
             line = self.model.text.count("\n", 0, min(unproven)) + 1
-            raise LanguageError(f"'{word}' cannot be renamed: whether '{word}' in line {line} is the same is not known")
+            shown = self._written(min(unproven)) or word
+            raise LanguageError(f"'{word}' cannot be renamed: whether '{shown}' in line {line} is the same is not known")
         if meaning.what == "member" and what != "part" and not any(self._defines(place) for place in starts):
             raise LanguageError(unknown)
         return Renaming(name=word, what=what, starts=sorted(starts))
@@ -119,15 +123,48 @@ class SameWords:
         found = {one.start: self._is_same(word, target, one) for one in words}
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
-        strings = self._in_strings(_MEMBER if target.meaning.what == "member" else _SLOT if target.meaning.what == "slot" else "", word)
-        if self._is_part(word, target.meaning):  # SGOMS names planning units by values: planning_unit:squeeze
+        strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
+        if self._may_be_in_strings(word, target):
+            strings |= self._in_strings(_VALUE, word)
+        if target.meaning.what == "variable":
+            strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
+        if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._in_strings(_VALUE, word)}
-        return same, unproven | (strings - found.keys())
+        return same, unproven | (strings - same)
+
+    def _may_be_in_strings(self, word: str, target: WordPlace) -> bool:
+        """Returns whether a name may be computed: that of a parameter for `f(**values)`, or of a member for `getattr(one, name)`."""
+        assert target.meaning is not None
+        if target.meaning.what != "member":
+            function = self._scopes.function_with_parameter(self.explicit.place(target.start))
+            called = self._scopes.called_with_names
+            return function is not None and bool(called if function in ("", "__init__") else called & {"", function})
+        own = [str(kind) for kind in target.meaning.owners if kind in self.model.agents]
+        family = {one for kind in own for one in self.members.family(kind, word)}
+        asked = (self._python.kinds_at(self.explicit, self._path, place) for place in self._scopes.asked_by_name)
+        return any(kinds is None or kinds & {*family, *(self.members.above_all(family) or kinds)} for kinds in asked)
+
+    def _written(self, at: int) -> str:
+        """Returns what stands around a position in a string without a space, such as `walker.speed`; empty if it is in none."""
+        begin, end = next(((begin, end) for begin, end in self.model.other_texts if begin <= at < end), (at, at))
+        return next((one[0] for one in re.compile(r"\S+").finditer(self.model.text, begin, end) if one.end() > at), "")
 
     def _is_part(self, word: str, meaning: Meaning) -> bool:
+        return next(self._parts(word, meaning), None) is not None
+
+    def _is_planning_unit(self, word: str, meaning: Meaning) -> bool:
+        return any(_PLANNING_UNITS & (self._of_part(part)[1] or _PLANNING_UNITS) for part in self._parts(word, meaning))
+
+    def _parts(self, word: str, meaning: Meaning) -> Iterator[Part]:
+        """Yields the parts that a member means."""
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
-        return any(word in self.model.agents[one].parts for agent in own for one in self.members.family(agent, word))
+        agents = [self.model.agents[one] for agent in own for one in sorted(self.members.family(agent, word))]
+        yield from (agent.parts[word] for agent in agents if word in agent.parts)
+
+    def _method_at(self, at: int) -> str:
+        """Returns the method around a position."""
+        return next((name.method for name in reversed(self.model.names) if name.start < at), "")
 
     def _in_strings(self, pattern: str, word: str) -> set[int]:
         """Returns where a word stands in strings that are no known texts of chunks or patterns, in the way that a pattern describes."""
@@ -162,8 +199,10 @@ class SameWords:
             for piece in self._variables(text):
                 if piece.text == word:
                     yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
-        for found in re.finditer(rf"\w\[[\"']({re.escape(word)})[\"']\]", self.model.text):
-            yield WordPlace(start=found.start(1), name=None, meaning=Meaning(what="slot"))
+        for found in re.finditer(rf"(\w+)\[[\"']({re.escape(word)})[\"']\]", self.model.text):
+            is_class = found[1] in self.model.agents  # of an Enum
+            meaning = Meaning(what="member", owners=frozenset({found[1]})) if is_class else Meaning(what="slot")
+            yield WordPlace(start=found.start(2), name=None, meaning=meaning)
         for name in self.model.names:
             if name.text == word:
                 yield WordPlace(start=name.start, name=name, meaning=self._of_name(name))
@@ -177,16 +216,20 @@ class SameWords:
         part = self.model.parts_of(text.agent).get(text.part) if text.kind == "pattern" and slot.text.isidentifier() else None
         if part is None or part.kind == "Buffer":
             return Meaning(what="slot")
+        kinds, above = self._of_part(part)
+        if kinds is None or above is None:
+            return None
+        return Meaning(what="slot") if _BUFFER in above else Meaning(what="member", owners=frozenset(kinds))
+
+    def _of_part(self, part: Part) -> tuple[set[str] | None, set[str] | None]:
+        """Returns the classes that a part may have, and all from which these inherit; None if they are not known."""
         own = part.kind in self.model.agents
         expression = f"{part.agent}.{part.name}"
         if expression not in self._kinds_of_parts:
             found = {part.kind} if own else self._python.kinds_of(self.explicit, self._path, expression)
             self._kinds_of_parts[expression] = found
         kinds = self._kinds_of_parts[expression]
-        above = self.members.above(part.kind) if own else self._python.ancestors(kinds)
-        if kinds is None or above is None:
-            return None
-        return Meaning(what="slot") if _BUFFER in above else Meaning(what="member", owners=frozenset(kinds))
+        return kinds, self.members.above(part.kind) if own else self._python.ancestors(kinds)
 
     def _of_name(self, name: Name) -> Meaning | None:
         place = self.explicit.place(name.start)
@@ -231,16 +274,34 @@ class SameWords:
         """Returns the meaning of `width` in `look(width=1)`: a parameter of the function, a field of the class, or a slot."""
         if actr_answers.is_modified(name):
             return Meaning(what="slot")
-        defined = self._python.define(self.explicit, self._path, name.start)
-        if defined is not None and defined.at is None:
+        if not self._is_known(name):
+            return None
+        found = [one.at for one in self._python.definitions(self.explicit, self._path, name.start)]
+        if found and all(at is None for at in found):
             return _LIBRARY
-        other = None if defined is None else self.model.name_at(defined.at or 0)
-        if other is not None and other.text == name.text and not (other.keyword and other.called):
-            return self._of_name(other)
+        others = [self.model.name_at(at) for at in found if at is not None]
+        meanings = {self._of_name(one) for one in others if one is not None and one.text == name.text and not (one.keyword and one.called)}
+        if meanings:
+            replaced = any(one is not None and self._is_replaced(one) for one in others)
+            return None if replaced or None in found or len(meanings) > 1 else meanings.pop()
         before = [one for one in self.model.names if one.end <= name.start and (*one.before, one.text) == name.called]
         kinds = self.members.kinds(before[-1]) if before and before[-1].before else None
         is_method = bool(kinds) and all(":" in kind and not kind.endswith(":") for kind in kinds or ())
         return _LIBRARY if is_method else None  # a method of an object of the library knows no names of the text
+
+    def _is_replaced(self, parameter: Name) -> bool:
+        """Returns whether another class of the same members has the same method, with a parameter of the same name."""
+        owner, _, method = parameter.method.rpartition(".")
+        family = self.members.family(owner, method) - {owner} if owner and method != "__init__" else set[str]()
+        found = (self.model.agents[one].methods.get(method) for one in family)
+        return any(one is not None and parameter.text in one.parameters for one in found)
+
+    def _is_known(self, argument: Name) -> bool:
+        """Returns whether it is known what a call with a keyword argument calls: no variable, which may be any function."""
+        if len(argument.called) > 1:
+            return True
+        called = next((one for one in reversed(self.model.names) if one.start < argument.start and (one.text,) == argument.called), None)
+        return called is not None and self._scopes.is_function_or_class(self.explicit.place(called.start))
 
     # -- which are the same
 
@@ -278,15 +339,25 @@ class SameWords:
         if name is None:  # of a part whose class is not known
             return None if one.what in ("slot", "member") else False
         if not name.called or not name.keyword:
-            return None if one.what == "member" else False
+            return None if one.what == "member" and (name.before or self._is_seen(word, one, name)) else False
         if one.what == "local":
             function = self._scopes.function_with_parameter(self.explicit.place(target.start))
-            return None if function in (name.called[-1], "__init__", "") else False
+            made = self.model.agents.get(name.called[-1]) if len(name.called) == 1 and function != "__init__" else None
+            makes = made is not None and not any("__init__" in one.methods for one in self.model.lineage(made.name))
+            return False if function is None or makes else None  # a class that only the library's `__init__` makes calls no other function
         return False if one.what == "variable" else None
+
+    def _is_seen(self, word: str, member: Meaning, name: Name) -> bool:
+        """Returns whether a production may see a member by its bare name: if its agent has it, or a class above or below that one."""
+        seen = {one.name for one in self.model.lineage(name.agent)}
+        family = {one for kind in member.owners if kind in self.model.agents for one in self.members.family(str(kind), word)}
+        return any(one in seen for kind in family for one in (kind, *self.model.above(kind)))
 
     # -- what may not be renamed
 
     def _check_name(self, name: Name) -> None:
+        if name.text.startswith("__") and name.text.endswith("__"):
+            raise LanguageError(f"'{name.text}' has a meaning in Python, and keeps its name")
         method = self.model.method(name.method)
         if name.text == "self" and not name.before and method is not None and method.sees_parts:
             raise LanguageError("'self' is the agent in every production, and keeps its name")
@@ -297,12 +368,23 @@ class SameWords:
         if defined is not None and defined.at is None:
             raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
 
+    def _check_members(self, agents: list[str], word: str) -> None:
+        for agent in agents:
+            of_library = self.members.library(agent, word)
+            if of_library:
+                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
+
     def _check_slot(self, slot: str) -> None:
         for text in self.model.texts:
             if any(one.text == slot for one in text.slots):
                 word = actr_answers.giver(self.model, text, slot)
                 if word:
                     raise LanguageError(f"'{slot}' is a slot of '{word}', and keeps its name here")
+        agents = self.model.agents.values()
+        kinds = {part.kind: f"{one.name}.{part.name}" for one in agents for part in one.parts.values()}
+        for kind, expression in (kinds | {base: base for one in agents for base in one.bases}).items():
+            if kind not in self.model.agents and slot in self._python.slots_given(self.explicit, self._path, expression):
+                raise LanguageError(f"'{slot}' is a slot of {kind}, and keeps its name here")
 
     def _defines(self, start: int) -> bool:
         return self._scopes.is_definition(self.explicit.place(start))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Any, cast
 
 from parso.grammar import load_grammar
@@ -10,6 +11,7 @@ from parso.grammar import load_grammar
 Scope = tuple[str, str, tuple[int, int]]
 """The kind of a scope, its name, and where it begins."""
 _COMPREHENSIONS = ("comp_for", "sync_comp_for")
+_BY_NAME = ("getattr", "setattr", "hasattr", "delattr", "vars")
 _FUNCTIONS = ("funcdef", "lambdef")
 
 
@@ -22,7 +24,7 @@ class Scopes:
 
     def __init__(self, code: str) -> None:
         self._module: Any = cast("Any", load_grammar()).parse(code)
-        self._leaves: dict[tuple[int, int], Any] = {leaf.start_pos: leaf for leaf in _names(self._module)}
+        self._leaves: dict[tuple[int, int], Any] = {leaf.start_pos: leaf for leaf in _leaves(self._module) if leaf.type == "name"}
         self._bound: dict[int, dict[str, Any]] = {}
         """For each scope, its names, and where each is bound first."""
         self._passed: dict[int, dict[str, bool]] = {}
@@ -57,11 +59,42 @@ class Scopes:
 
     def function_with_parameter(self, place: tuple[int, int]) -> str | None:
         """Returns the name of the function of which the plain name at a line and column is a parameter, empty for a `lambda`; else None."""
+        if self._type_of_binding(place) != "param":
+            return None
+        scope = self._scope(self._leaves[place])
+        return str(scope.name.value) if scope.type == "funcdef" else ""
+
+    def is_function_or_class(self, place: tuple[int, int]) -> bool:
+        """Returns whether the plain name at a line and column is that of a function or class, defined, imported, or Python's own."""
+        return self._type_of_binding(place) in ("funcdef", "classdef", "import_name", "import_from", "")
+
+    def _type_of_binding(self, place: tuple[int, int]) -> str:
+        """Returns by what kind of statement or parameter a plain name is bound first; empty if the text does not bind it."""
         leaf = self._leaves.get(place)
         scope = None if leaf is None else self._scope(leaf)
-        if leaf is None or scope is None or self._bound[id(scope)][leaf.value].parent.type != "param":
-            return None
-        return str(scope.name.value) if scope.type == "funcdef" else ""
+        definition = None if leaf is None or scope is None else self._bound[id(scope)][leaf.value].get_definition()
+        return "" if definition is None else str(definition.type)
+
+    @cached_property
+    def called_with_names(self) -> set[str]:
+        """The functions and classes that are called with computed names, as in `f(**values)`; empty for one that is not known."""
+        stars = (
+            leaf for leaf in _leaves(self._module) if leaf.type == "operator" and leaf.value == "**" and leaf.parent.type == "argument"
+        )
+        called = (leaf.search_ancestor("trailer", "classdef", "decorator").get_first_leaf().get_previous_leaf() for leaf in stars)
+        return {leaf.value if leaf.type == "name" and self._is_called_itself(leaf) else "" for leaf in called}
+
+    @cached_property
+    def asked_by_name(self) -> list[tuple[int, int]]:
+        """Where the expressions end of which attributes are asked for by computed names, as in `getattr(one, name)`."""
+        calls = (leaf.get_next_sibling() for leaf in self._leaves.values() if leaf.value in _BY_NAME)
+        given = (call.children[1] for call in calls if call is not None and call.type == "trailer" and call.children[0] == "(")
+        computed = (one for one in given if one.type != "arglist" or one.children[2].type != "string")
+        return [(one.children[0] if one.type == "arglist" else one).get_last_leaf().end_pos for one in computed]
+
+    def _is_called_itself(self, leaf: Any) -> bool:
+        """Returns whether a name that is called is that of an attribute, a function or a class, and no variable."""
+        return not _is_plain(leaf) or self.is_function_or_class(leaf.start_pos)
 
     def is_import_path(self, place: tuple[int, int]) -> bool:
         """Returns whether the name at a line and column is that of another text: of a module, or of what is imported from it."""
@@ -115,12 +148,12 @@ class Scopes:
         return [*found, self._module]
 
 
-def _names(node: Any) -> Iterator[Any]:
-    """Yields the names of a tree."""
-    if node.type == "name":
+def _leaves(node: Any) -> Iterator[Any]:
+    """Yields the leaves of a tree."""
+    if not hasattr(node, "children"):
         yield node
     for child in getattr(node, "children", ()):
-        yield from _names(child)
+        yield from _leaves(child)
 
 
 def _classes(node: Any) -> list[str]:
@@ -132,7 +165,7 @@ def _classes(node: Any) -> list[str]:
 def _is_plain(leaf: Any) -> bool:
     """Returns whether a name is neither an attribute nor that of an argument."""
     before, parent = leaf.get_previous_leaf(), leaf.parent
-    is_argument = parent.type == "argument" and parent.children[0] is leaf and parent.children[1].value == "="
+    is_argument = parent.type == "argument" and parent.children[0] is leaf and parent.children[1] == "="
     return (
         not (before is not None and before.type == "operator" and before.value == "." and parent.type != "import_from") and not is_argument
     )

@@ -21,8 +21,6 @@ class Buffer(Model):
 
     chunk: Chunk | None
     """The chunk that it holds; None if it is empty."""
-    _slots: frozenset[str] = frozenset()
-    """Slots that a library adds to its chunks: productions may test them although the model's text never sets them."""
 
     @named_parameters
     def __init__(self) -> None:

@@ -59,6 +59,8 @@ class Model(TreeNode):
     _profile: Profile | None = None
     _setters: frozenset[str] = frozenset()
     """The attributes that the class's own properties set."""
+    _slots: frozenset[str] = frozenset()
+    """Slots that a library's class gives to chunks: productions may test them although the model's text never sets them."""
 
     # Given to every instance when it is converted.
     changes: Trigger
@@ -66,6 +68,10 @@ class Model(TreeNode):
     log: Any
     random: random.Random
     parent: Model | None
+
+    # Given by the modeller.
+    profile: Any
+    """The name of the profile for the agent, or for all agents of an environment."""
 
     def __init__(self, log: Any = None, **attrs: Any) -> None:
         self._init_log = log

@@ -12,6 +12,7 @@ from actr3d.actr.chunks.chunk import Slot, parse_slots
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.class_members import is_modellers
+from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.source_code import source_of, syntax_tree
 from actr3d.actr.kernel.tree import TreeNode, subtree, top_of
 from actr3d.actr.lint.slot_names import GIVERS, is_production
@@ -73,11 +74,16 @@ def slots_held(parts: Iterable[object]) -> set[Any]:
     found: set[Any] = set()
     for part in parts:
         if isinstance(part, Buffer):
-            found.update(part.chunk or (), part._slots)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+            found.update(part.chunk or (), slots_of(type(part)))
         elif isinstance(part, Memory):
             for chunk in part.dm:
                 found.update(chunk)
     return found
+
+
+def slots_of(kind: type[Model]) -> frozenset[str]:
+    """Returns the slots that a class of the library gives to chunks."""
+    return kind._slots  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 @lru_cache(maxsize=16)
