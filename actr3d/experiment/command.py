@@ -284,11 +284,11 @@ def _show_fit(result: FitResult, out: Output) -> None:
     for one in result.parameters:
         low, high = (none if bound is None else f"{bound:g}" for bound in (one.low, one.high))
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
-    if not result.is_confirmed and not few:
-        out.line(
-            "These values are the best that were tried: what the model does between candidates is not known well enough for intervals. "
-            "Run more candidates; if its means vary by chance, more trials. If they jump at some value, see `tried` in fit.json"
-        )
+    if result.predicted_worst is not None:
+        near = ", ".join(f"{name} = {value:g}" for name, value in result.predicted_worst.items())
+        out.line("These values are the best that were tried: the model is not predicted well enough between candidates; run more of them.")
+        out.line(f"It is predicted worst near {near}. If its means jump there, fit in a range without the jump;")
+        out.line("if they vary by chance, run more trials or participants.")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
             r, r2 = ("none" if value is None else f"{value:.3f}" for value in (found.r, found.r2))

@@ -67,7 +67,10 @@ class Emulator:
         self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
         self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
         around: Array = process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation
-        self._scatter = float(np.einsum("nk,nk->", around, around)) / len(points)
+        scatter: Array = np.einsum("nk,nk->n", around, around)
+        self._scatter = float(scatter.mean())
+        self.roughest: Array = points[int(np.argmax(scatter))]
+        """The candidate whose means differ most from what is predicted there, (p,)."""
         self._bends = SMOOTH * float(np.sum(deviation**2))
         self._starts = np.vstack([points, np.random.default_rng(1).random((STARTS, self._axes))])
         self._start_squares = self._squares(self._starts)
@@ -86,7 +89,7 @@ class Emulator:
         self.is_confirmed = len(points) > self._axes and bool(np.any(self._squares(points) <= self._most))
         """Whether a candidate fits about as well as the minimum, but for the noise of its means; otherwise, the minimum is a guess."""
 
-    def agrees(self, means: Array, errors: Array) -> bool:
+    def agrees(self, means: Array, errors: Array, errors_of_candidates: Array) -> bool:
         """Returns whether the model does as predicted: at the minimum it fits as well, no candidate fits better, and the means of all
         candidates scatter little around what is predicted.
 
@@ -96,10 +99,14 @@ class Emulator:
         Args:
             means: The means of the model at the minimum, (k,).
             errors: Their standard errors, (k,).
+            errors_of_candidates: Those of the candidates' means, (n, k).
         """
-        squares, noise = (float(np.sum((each / self._unit) ** 2)) for each in (means - self._data * self._unit, 2 * errors))
+        squares = float(np.sum((means / self._unit - self._data) ** 2))
+        chance = float(np.sum((2 * errors / self._unit) ** 2))
+        of_candidates = float(np.sum((2 * errors_of_candidates / self._unit) ** 2)) / len(errors_of_candidates)
         allowed = max(self._most * (1 - 1 / self._factor) / 4, self._bends)
-        return squares <= min(self._most, self._factor * max(self._least, LEAST)) + noise and self._scatter <= allowed + noise
+        fits = squares <= min(self._most, self._factor * max(self._least, LEAST)) + chance
+        return fits and self._scatter <= allowed + of_candidates
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
         """Returns the bounds of the 95 % interval of a parameter; None where the range ends first or the model fails, and while the

@@ -21,9 +21,10 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
-from statistics import fmean, stdev, variance
+from statistics import fmean, stdev
 from typing import Any
 
 import numpy as np
@@ -55,6 +56,8 @@ DRAWS = 20
 
 Cell = tuple[tuple[str, Any], ...]
 """The conditions of a mean: names of columns and their values."""
+People = Mapping[str, Sequence[float]]
+"""The values of a measure in a cell, by participant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,14 +163,17 @@ class TriedCandidate:
 class _Simulated:
     """What a model has done."""
 
-    means: Mapping[Cell, float]
-    """Its means by cell, without cells in which a trial failed."""
-    errors: Mapping[Cell, float]
-    """The standard errors of the means that come from chance in the model: with the same participants, as far as trials show it."""
+    cells: Mapping[Cell, People]
+    """The values of its trials by cell, without cells in which a trial failed."""
     failed: int
     trials: int
     failure: str
     """The first failure, as text to append to an error message; "" for none."""
+
+    @cached_property
+    def means(self) -> dict[Cell, float]:
+        """The means by cell."""
+        return {cell: mean_of(people) for cell, people in self.cells.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,6 +201,8 @@ class FitResult:
     candidates: int
     is_confirmed: bool
     """Whether the model does at the fitted values and at all candidates what the emulator predicts; otherwise, there are no intervals."""
+    predicted_worst: Mapping[str, float] | None
+    """The candidate whose means differ most from what is predicted there; None if the fit is confirmed."""
     tried: tuple[TriedCandidate, ...]
     """All candidates, in order."""
     held_out: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
@@ -333,12 +341,10 @@ class Fit:
         values = self._values_at(emulator.minimum)
         fitted = self._simulate("candidate", f"fitted values: {_text_of(values)}", self._experiment(values))
         loss = rmse(fitted.means, self.target)
-        is_confirmed = emulator.is_confirmed
-        if math.isfinite(loss):
-            means, errors = (np.array([each[cell] for cell in self.target]) for each in (fitted.means, fitted.errors))
-            is_confirmed = is_confirmed and emulator.agrees(means, errors)
+        is_confirmed = emulator.is_confirmed and (not math.isfinite(loss) or self._does_as_predicted(emulator, values, fitted))
         if not is_confirmed:
             intervals = [(None, None)] * len(self._ranges)
+        rough = self._values_at(emulator.roughest)
         if not math.isfinite(loss) or (losses[best] < loss and not is_confirmed):
             values, fitted = self._points[best], tried[best]
         return FitResult(
@@ -348,6 +354,7 @@ class Fit:
             fit=_agreement_of(fitted, self.target),
             candidates=candidates,
             is_confirmed=is_confirmed,
+            predicted_worst=None if is_confirmed else rough,
             tried=tuple(
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
@@ -356,6 +363,26 @@ class Fit:
             ablated={change: self._compared("ablated", f"changed: {change}", self._ablated(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )
+
+    def _does_as_predicted(self, emulator: Emulator, values: Mapping[str, float], fitted: _Simulated) -> bool:
+        """Returns whether the model does as predicted, at the fitted values and all candidates, but for chance; see `Emulator.agrees`."""
+        means = np.array([fitted.means[cell] for cell in self.target])
+        at_candidates = [self._chance_errors(self._points[n], self._simulated[n], n) for n in self._usable(self.target)]
+        return emulator.agrees(means, self._chance_errors(values, fitted), np.array(at_candidates))
+
+    def _chance_errors(self, values: Mapping[str, float], found: _Simulated, number: int | None = None) -> NDArray[np.float64]:
+        """Returns the standard errors of means that come from chance in the model, from the differences to the nearest other candidate.
+
+        Those that are nearer than a step are left out: what is the same there may be only the numbers that are drawn.
+        """
+
+        def distance(other: int) -> float:
+            return math.dist(self._parts_of(values), self._parts_of(self._points[other]))
+
+        others = [n for n in self._usable(self.target) if n != number]
+        nearest = min((n for n in others if distance(n) > 1 / STEPS), key=distance, default=None)
+        elsewhere: Mapping[Cell, People] = {} if nearest is None else self._simulated[nearest].cells
+        return np.array([chance_error(found.cells[cell], elsewhere.get(cell, {})) for cell in self.target])
 
     # -- candidates
 
@@ -387,8 +414,7 @@ class Fit:
         it is TPE's turn."""
         turn, is_bound = divmod(number, 2)
         turn %= 2 * len(self._ranges) + 1
-        usable = any(math.isfinite(rmse(one.means, self.target)) for one in self._simulated)
-        if not usable or (is_bound and turn == 2 * len(self._ranges)):
+        if not self._usable(self.target) or (is_bound and turn == 2 * len(self._ranges)):
             return []
         emulator = self._emulator(self.target)
         point = emulator.bound(turn // 2, upper=turn % 2 == 1) if is_bound else emulator.minimum
@@ -437,7 +463,7 @@ class Fit:
                 run_experiment(experiment, store, self._client, show=show)
             columns = [name for name, _ in next(iter(self.target if target is None else target))]
             conditions = [name for name in columns if name == "group" or name in experiment.design.factors]
-            cells: dict[Cell, list[list[float]]] = {}
+            cells: dict[Cell, People] = {}
             lost, failure = set[Cell](), ""
             if failed := store.failures:
                 for row in (row for row in store.rows() if row["error"] is not None):
@@ -447,8 +473,7 @@ class Fit:
                 finished = (row for row in store.rows() if row["error"] is None)
                 found = cells_of_rows(finished, experiment.design.measure(measure or self.measure), columns)
                 cells = {cell: of for cell, of in found.items() if tuple((name, dict(cell)[name]) for name in conditions) not in lost}
-            means, errors = ({cell: of(people) for cell, people in cells.items()} for of in (mean_of, chance_error))
-            return _Simulated(means=means, errors=errors, failed=failed, trials=store.count, failure=failure)
+            return _Simulated(cells=cells, failed=failed, trials=store.count, failure=failure)
 
     def _compared(
         self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
@@ -466,10 +491,17 @@ class Fit:
 
     def _emulator(self, target: Mapping[Cell, float]) -> Emulator:
         """Returns the emulator that all candidates until now give: those with a mean in all conditions of the target, and those without."""
-        points = np.array([[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points])
-        usable = np.array([math.isfinite(rmse(one.means, target)) for one in self._simulated])
-        means = [[one.means[cell] for cell in target] for one, has in zip(self._simulated, usable, strict=True) if has]
-        return Emulator(points[usable], np.array(means), np.array([*target.values()]), points[~usable])
+        points, usable = np.array([*map(self._parts_of, self._points)]), self._usable(target)
+        means = [[self._simulated[n].means[cell] for cell in target] for n in usable]
+        return Emulator(points[usable], np.array(means), np.array([*target.values()]), np.delete(points, usable, axis=0))
+
+    def _usable(self, target: Mapping[Cell, float]) -> list[int]:
+        """Returns the numbers of the candidates with a mean in all conditions of a target."""
+        return [n for n, one in enumerate(self._simulated) if math.isfinite(rmse(one.means, target))]
+
+    def _parts_of(self, values: Mapping[str, float]) -> list[float]:
+        """Returns where values are in the ranges of their parameters, from 0 to 1."""
+        return [(values[one.name] - one.low) / (one.high - one.low) for one in self._ranges]
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
         parts = zip(self._ranges, point.tolist(), strict=True)
@@ -696,8 +728,8 @@ def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> d
     return found
 
 
-def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, list[list[float]]]:
-    """Returns the values of a measure by cell, those of each participant in a list of their own; nothing without values.
+def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, People]:
+    """Returns the values of a measure by cell and participant; nothing without values.
 
     Raises:
         ExperimentError: If no row has a column for the measure, or one of the columns.
@@ -714,22 +746,29 @@ def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[
         wrong = next((name for name in (measure.name, *columns) if name not in known), None)
         if wrong is not None:
             raise ExperimentError(f"no trial has a value of '{wrong}'{alternatives(wrong, known, 'the columns are:')}")
-    return {cell: [*people.values()] for cell, people in found.items()}
+    return {cell: dict(people) for cell, people in found.items()}
 
 
-def mean_of(people: Sequence[Sequence[float]]) -> float:
+def mean_of(people: People) -> float:
     """Returns the mean of a cell, with participants as the unit: the mean of the participants' means."""
-    return fmean(map(fmean, people))
+    return fmean(map(fmean, people.values()))
 
 
-def chance_error(people: Sequence[Sequence[float]]) -> float:
-    """Returns the standard error of the mean of a cell that comes from chance between the trials of each participant.
+def chance_error(people: People, elsewhere: People) -> float:
+    """Returns the standard error of the mean of a cell that comes from chance in the model.
 
-    Where a participant has a single trial, it is that which comes from all differences between participants; 0 if there is one.
+    All candidates have the same participants, so what they differ in cancels in the difference from another candidate. A single
+    participant shows it by differences between trials; a single trial does not: 0.
+
+    Args:
+        people: The values of the cell.
+        elsewhere: Its values at another candidate, near enough that the model does nearly the same.
     """
-    if all(len(values) > 1 for values in people):
-        return math.sqrt(sum(variance(values) / len(values) for values in people)) / len(people)
-    return stdev(map(fmean, people)) / math.sqrt(len(people)) if len(people) > 1 else 0.0
+    both = people.keys() & elsewhere.keys()
+    if len(both) > 1:
+        return stdev(fmean(people[one]) - fmean(elsewhere[one]) for one in both) / math.sqrt(2 * len(both))
+    values = next(iter(people.values())) if len(people) == 1 else ()
+    return stdev(values) / math.sqrt(len(values)) if len(values) > 1 else 0.0
 
 
 def rmse(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> float:

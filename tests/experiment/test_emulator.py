@@ -227,7 +227,19 @@ def test_a_model_whose_means_jump_does_not_agree_but_chance_does_no_harm(jump: f
 
     points = np.linspace(0.02, 0.98, 25)[:, None]
     emulator = Emulator(points, means(points), means(np.array([[0.47]]))[0] + rng.normal(0, 0.1, 8))
-    assert emulator.agrees(means(emulator.minimum[None])[0], np.full(8, chance)) == agrees
+    assert emulator.agrees(means(emulator.minimum[None])[0], np.full(8, chance), np.full((25, 8), chance)) == agrees
+    if jump:
+        assert emulator.roughest[0] == pytest.approx(0.45, abs=0.1)
+
+
+def test_chance_that_grows_along_a_range_is_not_taken_for_a_jump() -> None:
+    rng = np.random.default_rng(3)
+    points = np.linspace(0, 1, 30)[:, None]
+    errors = 0.2 * points * X
+    emulator = Emulator(points, points * X + rng.normal(0, errors), 0.1 * X + rng.normal(0, 0.02, 8))
+    at_minimum = emulator.minimum * X
+    assert emulator.agrees(at_minimum, 0.2 * at_minimum, errors)
+    assert not emulator.agrees(at_minimum, 0.2 * at_minimum, np.tile(0.02 * X, (30, 1)))
 
 
 def test_as_many_parameters_as_data_have_no_interval() -> None:

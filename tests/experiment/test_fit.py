@@ -267,17 +267,37 @@ def test_a_fit_of_no_more_means_than_parameters_ends_although_they_cannot_be_rea
     assert (slope.value, slope.low, slope.high) == (4, None, None)
 
 
-def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that_was_run(tmp_path: Path, capsys: Any) -> None:
+JUMP = """
+slope = 2.0
+own = 0.0
+x = 1
+
+from actr3d.experiment import Design, Group, Normal, design
+
+y = slope * x + 0.5 + (2 if slope > 1.37 else 0) + own
+
+
+@design
+def line():
+    people = Group(participants=4, parameters={"own": Normal(mean=0, sd=0.5, low=-2, high=2)})
+    return Design(factors={"x": [1, 2, 3, 4, 5]}, groups={"all": people}, trials=1, measures=["y"])
+"""
+
+
+@pytest.mark.parametrize("differ", [False, True])
+def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that_was_run(differ: bool, tmp_path: Path, capsys: Any) -> None:
+    """It is so, too, if participants differ more than what an interval allows."""
     model, people = tmp_path / "line.py", tmp_path / "people.csv"
-    model.write_text(LINE.replace("noise * self", "(2 if slope > 1.37 else 0) + 0 * self"), encoding="utf-8")
+    model.write_text(JUMP if differ else JUMP.replace("sd=0.5", "sd=0"), encoding="utf-8")
     people.write_text("x,measure,mean,source\n" + "".join(f"{x},y,{1.4 * x + 1},ours\n" for x in range(1, 6)), encoding="utf-8")
     words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
     assert main([*words, "--candidates", "25"]) == 0
     told = capsys.readouterr().out
     assert "interval: none yet" in told
-    assert "not known well enough for intervals" in told
+    assert "fit in a range without the jump" in told
     result = json.loads((tmp_path / "fit" / "fit.json").read_text())
     assert not result["is_confirmed"]
+    assert result["predicted_worst"]["slope"] == pytest.approx(1.37, abs=0.4)
     assert result["fit"]["rmse"] <= min(one["rmse"] for one in result["tried"])
 
 
@@ -600,17 +620,22 @@ def test_differences_too_large_for_a_float_are_infinite() -> None:
 def test_means_of_lists_are_compared_by_number() -> None:
     measure = Measured(name="share", over="block")
     rows = [{"participant": who, "share_1": 0.0, "share_2": high, "share_3": None} for who, high in (("a", 0.5), ("b", 1.0))]
-    assert cells_of_rows(rows, measure, ["block"]) == {(("block", 1),): [[0.0], [0.0]], (("block", 2),): [[0.5], [1.0]]}
+    assert cells_of_rows(rows, measure, ["block"]) == {
+        (("block", 1),): {"a": [0.0], "b": [0.0]},
+        (("block", 2),): {"a": [0.5], "b": [1.0]},
+    }
     with pytest.raises(ExperimentError, match="no trial has a value of 'word'"):
         cells_of_rows(rows, measure, ["word"])
     assert cells_of_rows([{"participant": "a", "y": None}], Measured(name="y"), []) == {}
 
 
-def test_the_chance_of_a_mean_is_that_between_trials_or_if_there_is_one_each_between_participants() -> None:
-    assert chance_error([[1.0, 3.0], [5.0, 9.0]]) == pytest.approx(math.sqrt(2 / 2 + 8 / 2) / 2)
-    assert chance_error([[7.0, 7.0, 7.0], [2.0, 2.0]]) == 0
-    assert chance_error([[1.0], [3.0]]) == pytest.approx(math.sqrt(2 / 2))
-    assert chance_error([[4.0]]) == 0
+def test_the_chance_of_a_mean_is_in_differences_that_participants_do_not_have_at_another_candidate_too() -> None:
+    apart = {"a": [1.0], "b": [5.0], "c": [9.0]}
+    assert chance_error(apart, {"a": [3.0], "b": [7.0], "c": [11.0]}) == 0
+    assert chance_error(apart, {"a": [0.0], "b": [5.0], "c": [10.0]}) == pytest.approx(1 / math.sqrt(2 * 3))
+    assert chance_error({"a": [7.0, 9.0]}, {"a": [7.0, 9.0]}) == pytest.approx(math.sqrt(2) / math.sqrt(2)), "one: between trials"
+    assert chance_error({"a": [7.0]}, {"a": [3.0]}) == 0
+    assert chance_error({"a": [7.0, 9.0], "b": [1.0]}, {}) == 0
 
 
 def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
