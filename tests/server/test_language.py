@@ -584,6 +584,24 @@ class Machine:
         self.turn = left if turns else right
         self.turn(speed=3)
 """
+PUT = """from actr3d.actr import *
+
+class Board(Model):
+    turn = 'ada'
+
+class Player(ACTR):
+    goal = Buffer()
+    mood = 'calm'
+    def go(self='mood:?mood', goal='task:go', board='turn:?mood'):
+        goal.set('task:wait')
+        print(board.turn)
+
+class Room(Model):
+    board = Board()
+
+room = Room()
+room.ada = Player()
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -642,6 +660,9 @@ def other(number):
         (f"{CALLED}class Other(ACTR): pass\nOther(pace=1)\n".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         (f"{CALLED}walk(**{{'pace': 2}})".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         (f"{CALLED}class Other: pass\nsetattr(Other(), 'quick' or name, 1)\n".replace("quick =", "qui|ck ="), "zzz", [9]),
+        (PUT.replace("self='mood", "self='mo|od"), "feeling", [8, 9]),
+        (PUT.replace("mood = ", "mo|od = "), "feeling", [8, 9]),
+        (PUT.replace("goal.set('task", "goal.set('ta|sk"), "job", [9, 10]),
         ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
         ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
@@ -693,6 +714,11 @@ report(Base(), size=4)
         (FAN.replace("random.choice", "random.cho|ice"), "is defined in|where it is defined is not known"),
         (PAIRED.replace("random.sample", "random.sam|ple"), "is defined in|where it is defined is not known"),
         (FAN.replace("imaginal.set", "imaginal.s|et"), "is defined in"),
+        (PUT.replace("turn = ", "tu|rn = "), "whether 'turn:.mood' in line 9 is the same is not known"),
+        (PUT.replace("board='turn", "board='tu|rn"), "where it is defined is not known"),
+        (PUT.replace("board = ", "bo|ard = "), "whether 'board' in line 9 is the same is not known"),
+        (f"{PUT}print([f'{{one}}:1' for one in ('task', 'job')])\n".replace("goal='task", "goal='ta|sk"), "whether 'task' in line 18"),
+        (PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass"), "'key_pressed' is .* of Model, and keeps its name here"),
         (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
         (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),
         (DOORWAY.replace('seen=None, eye="busy', 'seen=None, eye="bu|sy'), "'busy' is defined in .*, and keeps its name here"),

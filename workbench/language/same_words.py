@@ -124,7 +124,7 @@ class SameWords:
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
         strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
-        if self._may_be_in_strings(word, target):
+        if target.meaning.what == "slot" or self._may_be_in_strings(word, target):
             strings |= self._in_strings(_VALUE, word)
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
@@ -212,9 +212,15 @@ class SameWords:
         return [piece for piece in text.pieces if piece.is_variable]
 
     def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
-        """Returns the meaning of a slot in a text: in a pattern of a module, it is an attribute."""
-        part = self.model.parts_of(text.agent).get(text.part) if text.kind == "pattern" and slot.text.isidentifier() else None
-        if part is None or part.kind == "Buffer":
+        """Returns the meaning of a slot in a text: in a pattern of a module or of the agent, it is an attribute; None if it is not known."""
+        if text.kind != "pattern" or not slot.text.isidentifier():
+            return Meaning(what="slot")
+        if text.part == "self":
+            return Meaning(what="member", owners=frozenset({text.agent}))
+        part = self.model.parts_of(text.agent).get(text.part)
+        if part is None:  # of a class of the library; otherwise, of what the agent is put into
+            return Meaning(what="slot") if self.members.library(text.agent, text.part) else None
+        if part.kind == "Buffer":
             return Meaning(what="slot")
         kinds, above = self._of_part(part)
         if kinds is None or above is None:
@@ -339,7 +345,8 @@ class SameWords:
         if name is None:  # of a part whose class is not known
             return None if one.what in ("slot", "member") else False
         if not name.called or not name.keyword:
-            return None if one.what == "member" and (name.before or self._is_seen(word, one, name)) else False
+            seen = one.what == "member" and (name.before or self._is_part(word, one) or self._is_seen(word, one, name))
+            return None if seen else False
         if one.what == "local":
             function = self._scopes.function_with_parameter(self.explicit.place(target.start))
             made = self.model.agents.get(name.called[-1]) if len(name.called) == 1 and function != "__init__" else None
