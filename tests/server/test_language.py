@@ -718,7 +718,7 @@ report(Base(), size=4)
         (PUT.replace("board='turn", "board='tu|rn"), "where it is defined is not known"),
         (PUT.replace("board = ", "bo|ard = "), "whether 'board' in line 9 is the same is not known"),
         (f"{PUT}print([f'{{one}}:1' for one in ('task', 'job')])\n".replace("goal='task", "goal='ta|sk"), "whether 'task' in line 18"),
-        (PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass"), "'key_pressed' is .* of Model, and keeps its name here"),
+        (PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass"), "'key_pressed' is defined in .*, and keeps its name here"),
         (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
         (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),
         (DOORWAY.replace('seen=None, eye="busy', 'seen=None, eye="bu|sy'), "'busy' is defined in .*, and keeps its name here"),

@@ -212,7 +212,7 @@ class SameWords:
         return [piece for piece in text.pieces if piece.is_variable]
 
     def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
-        """Returns the meaning of a slot in a text: in a pattern of a module or of the agent, it is an attribute; None if it is not known."""
+        """Returns the meaning of a slot in a text: an attribute in a pattern of a module or of the agent; None if it is not known."""
         if text.kind != "pattern" or not slot.text.isidentifier():
             return Meaning(what="slot")
         if text.part == "self":
