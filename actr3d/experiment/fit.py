@@ -757,18 +757,17 @@ def mean_of(people: People) -> float:
 def chance_error(people: People, elsewhere: People) -> float:
     """Returns the standard error of the mean of a cell that comes from chance in the model.
 
-    All candidates have the same participants, so what they differ in cancels in the difference from another candidate. A single
-    participant shows it by differences between trials; a single trial does not: 0.
+    All candidates have the same participants and conditions, so what these differ in cancels in the difference from another candidate: of
+    the participants' means, or of the trials of a single participant. One trial does not show chance: 0.
 
     Args:
-        people: The values of the cell.
+        people: The values of the cell, in the order of trials.
         elsewhere: Its values at another candidate, near enough that the model does nearly the same.
     """
-    both = people.keys() & elsewhere.keys()
-    if len(both) > 1:
-        return stdev(fmean(people[one]) - fmean(elsewhere[one]) for one in both) / math.sqrt(2 * len(both))
-    values = next(iter(people.values())) if len(people) == 1 else ()
-    return stdev(values) / math.sqrt(len(values)) if len(values) > 1 else 0.0
+    pairs = [(fmean(people[one]), fmean(elsewhere[one])) for one in people.keys() & elsewhere.keys()]
+    if len(pairs) == 1:
+        pairs = [pair for one in people.keys() & elsewhere.keys() for pair in zip(people[one], elsewhere[one], strict=False)]
+    return stdev(here - there for here, there in pairs) / math.sqrt(2 * len(pairs)) if len(pairs) > 1 else 0.0
 
 
 def rmse(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> float:

@@ -284,11 +284,14 @@ def line():
 """
 
 
-@pytest.mark.parametrize("differ", [False, True])
-def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that_was_run(differ: bool, tmp_path: Path, capsys: Any) -> None:
-    """It is so, too, if participants differ more than what an interval allows."""
+@pytest.mark.parametrize("differ", ["nothing", "participants", "trials"])
+def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that_was_run(differ: str, tmp_path: Path, capsys: Any) -> None:
+    """It is so, too, if participants, or the trials of one, differ more than what an interval allows."""
     model, people = tmp_path / "line.py", tmp_path / "people.csv"
-    model.write_text(JUMP if differ else JUMP.replace("sd=0.5", "sd=0"), encoding="utf-8")
+    one = JUMP.replace("participants=4, ", "").replace('"x": [1,', '"own": [-0.5, 0, 0.5], "x": [1,')
+    one = re.sub(r"Group\(.*\)", "Group(participants=1)", one)
+    text = {"nothing": JUMP.replace("sd=0.5", "sd=0"), "participants": JUMP, "trials": one}[differ]
+    model.write_text(text, encoding="utf-8")
     people.write_text("x,measure,mean,source\n" + "".join(f"{x},y,{1.4 * x + 1},ours\n" for x in range(1, 6)), encoding="utf-8")
     words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
     assert main([*words, "--candidates", "25"]) == 0
@@ -633,7 +636,8 @@ def test_the_chance_of_a_mean_is_in_differences_that_participants_do_not_have_at
     apart = {"a": [1.0], "b": [5.0], "c": [9.0]}
     assert chance_error(apart, {"a": [3.0], "b": [7.0], "c": [11.0]}) == 0
     assert chance_error(apart, {"a": [0.0], "b": [5.0], "c": [10.0]}) == pytest.approx(1 / math.sqrt(2 * 3))
-    assert chance_error({"a": [7.0, 9.0]}, {"a": [7.0, 9.0]}) == pytest.approx(math.sqrt(2) / math.sqrt(2)), "one: between trials"
+    assert chance_error({"a": [7.0, 9.0, 4.0]}, {"a": [5.0, 7.0, 2.0]}) == 0, "of one participant, trials differ"
+    assert chance_error({"a": [7.0, 9.0]}, {"a": [7.0, 7.0]}) == pytest.approx(math.sqrt(2) / math.sqrt(4))
     assert chance_error({"a": [7.0]}, {"a": [3.0]}) == 0
     assert chance_error({"a": [7.0, 9.0], "b": [1.0]}, {}) == 0
 
