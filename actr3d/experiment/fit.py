@@ -366,23 +366,20 @@ class Fit:
 
     def _does_as_predicted(self, emulator: Emulator, values: Mapping[str, float], fitted: _Simulated) -> bool:
         """Returns whether the model does as predicted, at the fitted values and all candidates, but for chance; see `Emulator.agrees`."""
+        usable = self._usable(self.target)
+        places = np.array([self._parts_of(self._points[n]) for n in usable])
+
+        def errors(found: _Simulated, place: Any) -> list[float]:
+            # From the differences to the nearest candidate, but none so near that the model may draw the same numbers.
+            distances: NDArray[np.float64] = np.linalg.norm(places - place, axis=1)
+            distances[distances <= 1 / STEPS] = np.inf
+            nearest = int(np.argmin(distances))
+            elsewhere: Mapping[Cell, People] = self._simulated[usable[nearest]].cells if np.isfinite(distances[nearest]) else {}
+            return [chance_error(found.cells[cell], elsewhere.get(cell, {})) for cell in self.target]
+
+        at_candidates = [errors(self._simulated[n], place) for n, place in zip(usable, places, strict=True)]
         means = np.array([fitted.means[cell] for cell in self.target])
-        at_candidates = [self._chance_errors(self._points[n], self._simulated[n], n) for n in self._usable(self.target)]
-        return emulator.agrees(means, self._chance_errors(values, fitted), np.array(at_candidates))
-
-    def _chance_errors(self, values: Mapping[str, float], found: _Simulated, number: int | None = None) -> NDArray[np.float64]:
-        """Returns the standard errors of means that come from chance in the model, from the differences to the nearest other candidate.
-
-        Those that are nearer than a step are left out: what is the same there may be only the numbers that are drawn.
-        """
-
-        def distance(other: int) -> float:
-            return math.dist(self._parts_of(values), self._parts_of(self._points[other]))
-
-        others = [n for n in self._usable(self.target) if n != number]
-        nearest = min((n for n in others if distance(n) > 1 / STEPS), key=distance, default=None)
-        elsewhere: Mapping[Cell, People] = {} if nearest is None else self._simulated[nearest].cells
-        return np.array([chance_error(found.cells[cell], elsewhere.get(cell, {})) for cell in self.target])
+        return emulator.agrees(means, np.array(errors(fitted, self._parts_of(values))), np.array(at_candidates))
 
     # -- candidates
 
@@ -436,7 +433,7 @@ class Fit:
         except DesignError as error:
             if error.name not in values:
                 raise
-            text = str(error).removeprefix(f"--set {error.name}: ").removeprefix("Design: ").removeprefix("Design: ")
+            text = str(error).removeprefix(f"--set {error.name}: ").removeprefix("Design: ")
             raise DesignError(f"{option.format(error.name)}: {text}", error.name) from None
 
     def _simulate(
