@@ -602,6 +602,23 @@ class Room(Model):
 room = Room()
 room.ada = Player()
 """
+THINGS = """from actr3d.actr import *
+
+class Fly(Model):
+    lives = 2
+    salience = 1
+
+class Frog(ACTR):
+    visual = Buffer()
+    eyes = SOSVision(visual)
+    def catch(visual='lives:?lives', fly='lives:2'):
+        print(fly)
+
+class Pond(Model):
+    def __init__(self):
+        self.fly = Fly()
+        self.frog = Frog()
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -714,6 +731,10 @@ report(Base(), size=4)
         (FAN.replace("random.choice", "random.cho|ice"), "is defined in|where it is defined is not known"),
         (PAIRED.replace("random.sample", "random.sam|ple"), "is defined in|where it is defined is not known"),
         (FAN.replace("imaginal.set", "imaginal.s|et"), "is defined in"),
+        (THINGS.replace("lives = ", "li|ves = "), "whether 'lives:.lives' in line 10 is the same"),
+        (THINGS.replace("='lives:?", "='li|ves:?"), "whether '.*lives.*' in line .* is the same"),
+        (THINGS.replace("salience =", "sali|ence ="), "'salience' is .*, and keeps its name here"),
+        (THINGS.replace("self.fly", "self.fl|y"), "whether 'fly' in line 10 is the same"),
         (PUT.replace("turn = ", "tu|rn = "), "whether 'turn:.mood' in line 9 is the same is not known"),
         (PUT.replace("board='turn", "board='tu|rn"), "where it is defined is not known"),
         (PUT.replace("board = ", "bo|ard = "), "whether 'board' in line 9 is the same is not known"),

@@ -323,8 +323,7 @@ class SameWords:
         if one.what == "slot" and asked and two.what != "slot":
             return None
         if {one.what, two.what} == {"slot", "member"}:
-            features = (one.owners | two.owners) & {agent.name for agent in self.model.agents.values() if "Feature" in agent.bases}
-            return None if features else False
+            return None if any(self._is_seen_as_chunk(kind) for kind in one.owners | two.owners) else False
         if one.what != two.what:
             return False
         if one.what != "member":
@@ -345,8 +344,10 @@ class SameWords:
         if name is None:  # of a part whose class is not known
             return None if one.what in ("slot", "member") else False
         if not name.called or not name.keyword:
-            seen = one.what == "member" and (name.before or self._is_part(word, one) or self._is_seen(word, one, name))
-            return None if seen else False
+            method = self.model.method(name.method)
+            matched = method is not None and method.sees_parts and word in method.parameters  # in a pattern of what the text does not show
+            seen = name.before or matched or self._is_part(word, one) or self._is_seen(word, one, name)
+            return None if one.what == "member" and seen else False
         if one.what == "local":
             function = self._scopes.function_with_parameter(self.explicit.place(target.start))
             made = self.model.agents.get(name.called[-1]) if len(name.called) == 1 and function != "__init__" else None
@@ -359,6 +360,11 @@ class SameWords:
         seen = {one.name for one in self.model.lineage(name.agent)}
         family = {one for kind in member.owners if kind in self.model.agents for one in self.members.family(str(kind), word)}
         return any(one in seen for kind in family for one in (kind, *self.model.above(kind)))
+
+    def _is_seen_as_chunk(self, kind: object) -> bool:
+        """Returns whether vision may make a chunk of a thing of this class, with its attributes as slots."""
+        bases = {base for one in self.model.lineage(str(kind)) for base in one.bases} if kind in self.model.agents else set[str]()
+        return any(base.rpartition(".")[2] in ("Feature", "Model") for base in bases)
 
     # -- what may not be renamed
 
