@@ -119,9 +119,9 @@ def main(number: int) -> None:
 
 
 def preload() -> None:
-    """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second.
+    """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second, without and with eyes.
 
-    In a new installation, a copy of this process compiles the longer half of the camera, which this one then loads.
+    In a new installation, a copy of this process compiles the longer half of the camera meanwhile, which the eyes then load.
     """
     from actr3d.actr.kernel.run_limits import RunLimits
     from actr3d.runner.model_factory import Blueprint
@@ -135,11 +135,12 @@ def preload() -> None:
             os._exit(0)
     compile_camera("scene")
     compile_detectors()
-    for sees in (False, True):
-        if sees:
-            os.waitpid(copy, 0)
-        with RunLimits(seed=0):
-            simulation, _ = Blueprint(SMALL, "small.py", Path()).build({"sees": sees})
+    with RunLimits(seed=0):
+        blueprint = Blueprint(SMALL, "small.py", Path())
+        for sees in (False, True):
+            if sees:
+                os.waitpid(copy, 0)
+            simulation, _ = blueprint.build({"sees": sees})
             simulation.run(0.1)
 
 
