@@ -65,8 +65,9 @@ class Emulator:
             warnings.simplefilter("ignore")  # that an estimate is at its bound: that of a straight line is
             process = library.GaussianProcessRegressor(kernel).fit(points, (means - self._middle) / deviation)
         self._lengths: Array = np.atleast_1d(process.kernel_.k1.k2.length_scale)
-        self._weights: Array = process.kernel_.k1.k1.constant_value * process.alpha_.reshape(len(points), -1) * deviation
-        around: Array = process.kernel_.k2.noise_level * process.alpha_.reshape(len(points), -1) * deviation
+        pull: Array = process.alpha_.reshape(len(points), -1) * deviation
+        self._weights: Array = process.kernel_.k1.k1.constant_value * pull
+        around: Array = process.kernel_.k2.noise_level * pull  # how far the candidates' means are from what is predicted
         scatter: Array = np.einsum("nk,nk->n", around, around)
         self._scatter = float(scatter.mean())
         self.roughest: Array = points[int(np.argmax(scatter))]

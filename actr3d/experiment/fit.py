@@ -344,7 +344,6 @@ class Fit:
         is_confirmed = emulator.is_confirmed and (not math.isfinite(loss) or self._does_as_predicted(emulator, values, fitted))
         if not is_confirmed:
             intervals = [(None, None)] * len(self._ranges)
-        rough = self._values_at(emulator.roughest)
         if not math.isfinite(loss) or (losses[best] < loss and not is_confirmed):
             values, fitted = self._points[best], tried[best]
         return FitResult(
@@ -354,7 +353,7 @@ class Fit:
             fit=_agreement_of(fitted, self.target),
             candidates=candidates,
             is_confirmed=is_confirmed,
-            predicted_worst=None if is_confirmed else rough,
+            predicted_worst=None if is_confirmed else self._values_at(emulator.roughest),
             tried=tuple(
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
