@@ -177,6 +177,17 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     expect(page.get_by_text("in the trash folder")).to_have_count(0)  # which would no longer be true
 
 
+def delete_by_keys(page: Page, name: str) -> None:
+    page.keyboard.press("Shift")  # from now on by keys
+    row(page, name).locator("input").focus()
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Delete", exact=True)).to_be_visible()
+    page.keyboard.press("Delete")
+    expect(page.get_by_role("dialog").get_by_role("button", name="Cancel")).to_be_focused()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+
+
 def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, workbench: Served, recordings: Path) -> None:
     names = [recorded(workbench, "counting.py") for _ in range(3)]
     open_tab(page, "Runs")
@@ -186,14 +197,7 @@ def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, 
     order = [str(rows.nth(n).get_attribute("data-run")) for n in range(3)]
     assert sorted(names) == sorted(order)
     for gone, focused in (order[1], order[2]), (order[2], order[0]):
-        page.keyboard.press("Shift")  # from now on by keys
-        row(page, gone).locator("input").focus()
-        page.keyboard.press("Space")
-        expect(page.get_by_role("button", name="Delete", exact=True)).to_be_visible()
-        page.keyboard.press("Delete")
-        expect(page.get_by_role("dialog").get_by_role("button", name="Cancel")).to_be_focused()
-        page.keyboard.press("Tab")
-        page.keyboard.press("Enter")
+        delete_by_keys(page, gone)
         expect(row(page, gone)).to_have_count(0)
         expect(row(page, focused).locator("input")).to_be_focused()
     page.locator(".toast").get_by_role("button", name="Restore").focus()
@@ -213,14 +217,7 @@ def test_after_the_only_row_was_deleted_by_keys_the_search_has_the_focus(page: P
     open_tab(page, "Runs")
     page.get_by_label("Search recordings").fill(name[-4:])
     expect(page.locator("tr[data-run]")).to_have_count(1)
-    page.keyboard.press("Shift")  # from now on by keys
-    row(page, name).locator("input").focus()
-    page.keyboard.press("Space")
-    expect(page.get_by_role("button", name="Delete", exact=True)).to_be_visible()
-    page.keyboard.press("Delete")
-    expect(page.get_by_role("dialog").get_by_role("button", name="Cancel")).to_be_focused()
-    page.keyboard.press("Tab")
-    page.keyboard.press("Enter")
+    delete_by_keys(page, name)
     expect(page.get_by_text("No recording has all these words.")).to_be_visible()
     expect(page.get_by_label("Search recordings")).to_be_focused()
     page.locator(".toast").get_by_role("button", name="Restore").focus()

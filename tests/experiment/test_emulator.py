@@ -55,6 +55,20 @@ def tried(model: Model, axes: int, data: Any, number: int = 30) -> Emulator:
     return Emulator(points, model(*points.T), data)
 
 
+def works_below_a_third(points: Any, data: Any, number: int) -> Emulator:
+    """Returns an emulator of `power` that fails for high a, after as many more candidates, half of them where the one before was least."""
+
+    def emulator_of(points: Any) -> Emulator:
+        works = points[:, 0] <= 1 / 3
+        return Emulator(points[works], power(*points[works].T), data, points[~works])
+
+    for turn in range(number):
+        emulator = emulator_of(points)
+        further = emulator.minimum if turn % 2 == 0 else emulator.bound(turn // 2 % 2, upper=turn // 4 % 2 == 1)
+        points = np.vstack([points, further])
+    return emulator_of(points)
+
+
 def profile(model: Model, axes: int, data: Any, axis: int) -> tuple[float | None, float | None]:
     """Returns the bounds of the interval from the model itself: at each step, SciPy finds the least squares over the other parameters."""
     grid, starts = np.linspace(0, 1, 101), [np.full(axes, part) for part in (0.2, 0.5, 0.8)]
@@ -173,30 +187,18 @@ def test_a_single_candidate_determines_nothing() -> None:
 
 
 def test_bounds_are_proposed_also_if_data_cannot_be_reached_and_are_no_more_than_parameters() -> None:
-    """A fit crowds its candidates where the model comes nearest, until sums of squares are known to few digits."""
-
-    def two(a: Any, b: Any, c: Any) -> Any:
-        return np.stack([5 * a + 5 * b + c * c, 10 * a - 5 * b + 7 * a * b + c], axis=-1)
-
-    emulator = tried(two, 3, np.array([-3, 9]), 40)
-    for axis in range(3):
-        assert emulator.bound(axis, upper=True).shape == (3,)
-        assert emulator.interval(axis) == (None, None)
+    for seed in range(5):
+        points = np.random.default_rng(seed).random((14, 3))
+        emulator = Emulator(points, points @ [[1.0, 0.3], [0.5, 0.2], [0.1, 0.8]], np.array([30.0, 20.0]))
+        for axis in range(3):
+            assert emulator.bound(axis, upper=True) == pytest.approx(np.ones(3))
+            assert emulator.interval(axis) == (None, None)
 
 
 def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_another() -> None:
     """It fails for high a; the interval of d ends where it works."""
     points, data = np.random.default_rng(4).random((10, 2)), power(np.array(0.4), np.array(0.4)) + 0.03 * (-1) ** X
-
-    def emulator_of(points: Any) -> Emulator:
-        works = points[:, 0] <= 1 / 3
-        return Emulator(points[works], power(*points[works].T), data, points[~works])
-
-    for turn in range(24):
-        emulator = emulator_of(points)
-        further = emulator.minimum if turn % 2 == 0 else emulator.bound(turn // 2 % 2, upper=turn // 4 % 2 == 1)
-        points = np.vstack([points, further])
-    assert None not in emulator_of(points).interval(1)
+    assert None not in works_below_a_third(points, data, 24).interval(1)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -204,16 +206,7 @@ def test_where_the_model_fails_is_no_bound_of_the_parameter_that_makes_it_fail(s
     """It fails for high a; other values of d, near which it works, do not make that a bound."""
     rng = np.random.default_rng(seed)
     points, data = rng.random((10, 2)), power(np.array(0.31), np.array(0.4)) + rng.normal(0, 0.05, 8)
-
-    def emulator_of(points: Any) -> Emulator:
-        works = points[:, 0] <= 1 / 3
-        return Emulator(points[works], power(*points[works].T), data, points[~works])
-
-    for turn in range(26):
-        emulator = emulator_of(points)
-        further = emulator.minimum if turn % 2 == 0 else emulator.bound(turn // 2 % 2, upper=turn // 4 % 2 == 1)
-        points = np.vstack([points, further])
-    high = emulator_of(points).interval(0)[1]
+    high = works_below_a_third(points, data, 26).interval(0)[1]
     assert high is None or high <= 1 / 3
 
 

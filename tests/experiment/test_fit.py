@@ -422,7 +422,7 @@ def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client:
     assert [(one.values["slope"], one.rmse, one.trials) for one in failing] == [(1.35, None, 20)]
     assert 0 < failing[0].failed < 4
     assert 1.45 <= result.parameters[0].value <= 1.65  # where no trial fails
-    assert result.fit.failed == 0
+    assert result.fit.rmse <= min(one.rmse for one in result.tried if one.rmse is not None)
     assert (result.fit.missing, result.fit.failed, result.fit.trials) == (0, 0, 20)
     assert (result.held_out[steeper].missing, result.held_out[steeper].failed, result.held_out[steeper].trials) == (0, 0, 36)
     changed = result.ablated["slope=1.4"]
