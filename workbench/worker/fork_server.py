@@ -119,7 +119,7 @@ def main(number: int) -> None:
 
 
 def preload() -> None:
-    """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second, without and with eyes.
+    """Imports and compiles what models need, so that runs start at once: a small one, without and with eyes, runs for 0.1 s.
 
     In a new installation, a copy of this process compiles the longer half of the camera meanwhile, which the eyes then load.
     """
