@@ -26,6 +26,8 @@ STARTS = 2**12
 """The number of points, drawn evenly, from the best of which the search for a minimum begins."""
 DESCENTS = 15
 """The maximum number of steps of this search."""
+STILL = 1e-7
+"""The search ends when no point would move by more, as a part of the range."""
 ZOOM, ZOOMS = 10, 5
 """The number of parts into which the step with the bound of an interval is divided, and how often values are compared."""
 ROUNDING = 1e-6
@@ -205,8 +207,8 @@ class Emulator:
         fixed = [axis for axis in range(self._axes) if axis not in axes]
         for _ in range(DESCENTS if len(axes) else 0):
             differences, correlation = self._predict(points)
-            ways = (self._points - points[:, None, :]) / self._lengths**2
-            slopes = np.einsum("mn,mnp,nk->mpk", correlation, ways, self._weights, optimize=True)
+            ways = (self._points.T - points[:, :, None]) / self._lengths[:, None] ** 2
+            slopes = (correlation[:, None, :] * ways) @ self._weights
             slopes[:, fixed] = 0
             gradient = np.einsum("mpk,mk->mp", slopes, differences)
             at_end = ((points <= 0) & (gradient > 0)) | ((points >= 1) & (gradient < 0))
@@ -220,6 +222,8 @@ class Emulator:
             better = found < squares
             points[better], squares[better] = tried[better], found[better]
             damping = np.clip(np.where(better, damping / 5, damping * 5), 1e-12, 1e12)
+            if np.all(np.abs(step) < STILL):
+                break
         return points, squares
 
 

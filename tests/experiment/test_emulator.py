@@ -90,6 +90,7 @@ def profile(model: Model, axes: int, data: Any, axis: int) -> tuple[float | None
     return None if inside[0] == 0 else inside[0], None if inside[-1] == 1 else inside[-1]
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(
     ("model", "true", "noise"),
     [(power, (0.3, 0.4), 0.05), (product, (0.4, 0.5), 0.05), (added, (0.5, 0.6), 0.1), (offset_power, (0.25, 0.3, 0.3), 0.02)],
@@ -201,6 +202,7 @@ def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_
     assert None not in works_below_a_third(points, data, 24).interval(1)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("seed", range(4))
 def test_where_the_model_fails_is_no_bound_of_the_parameter_that_makes_it_fail(seed: int) -> None:
     """It fails for high a; other values of d, near which it works, do not make that a bound."""

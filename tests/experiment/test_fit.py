@@ -284,6 +284,7 @@ def line():
 """
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("differ", ["nothing", "participants", "trials"])
 def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that_was_run(differ: str, tmp_path: Path, capsys: Any) -> None:
     """It is so, too, if participants, or the trials of one, differ more than what an interval allows."""

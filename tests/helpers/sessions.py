@@ -145,8 +145,8 @@ class Talk:
 
     @property
     def state(self) -> dict[str, Any]:
-        """The newest state."""
-        return json.loads(self.session.state_json())
+        """The newest state; without a status while a run that was begun again has none yet."""
+        return json.loads(self.session.state_json()) or {"status": None}
 
     @property
     def facts(self) -> dict[str, Any]:
