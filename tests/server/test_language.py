@@ -384,6 +384,26 @@ def test_where_a_name_is_defined(ask: Asked, text: str, found: str) -> None:
     assert text.replace("|", "").startswith(found, place["at"])
 
 
+@pytest.mark.parametrize(
+    ("text", "label"),
+    [
+        ("from ccm import *\nAC|", "ACTR"),
+        ("import ccm\nccm.log_every|", "log_everything"),
+        ("import ccm.lib.actr\nccm.lib.actr.Mem|", "Memory"),
+        ("from python_actr.lib.actr import Mem|", "Memory"),
+        (
+            "from ccm.lib.actr import *\nclass A(ACTR):\n    memory = Memory(Buffer())\n    def f(memory='busy:False'):\n        memory.requ|",
+            "request",
+        ),
+    ],
+)
+def test_texts_with_the_old_names_of_the_library_are_completed_and_explained(ask: Asked, text: str, label: str) -> None:
+    assert ask.labels(text)[0] == label
+    begun = text.removesuffix("|")
+    whole = begun + label[next(n for n in range(len(label), -1, -1) if begun.endswith(label[:n])) :]
+    assert label in ask("document", f"{whole[:-1]}|{whole[-1]}")["title"]
+
+
 def test_where_names_of_other_files_are_defined(ask: Asked) -> None:
     beside = ask("define", "from beside import helps\nhel|ps(1)")
     assert (beside["path"], beside["line"]) == ("beside.py", 1)
@@ -619,6 +639,22 @@ class Pond(Model):
         self.fly = Fly()
         self.frog = Frog()
 """
+OLD = """import ccm
+from ccm.lib.actr import *
+
+class Screen(ccm.Model):
+    def start(self):
+        self.shown = 1
+    def key_pressed(self, key):
+        self.shown = key
+
+class Person(ACTR):
+    goal = Buffer()
+    memory = Memory(goal)
+    motor = Motor()
+    def look(goal="task:?task", memory="busy:False"):
+        motor.press_key(task)
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -680,6 +716,8 @@ def other(number):
         (PUT.replace("self='mood", "self='mo|od"), "feeling", [8, 9]),
         (PUT.replace("mood = ", "mo|od = "), "feeling", [8, 9]),
         (PUT.replace("goal.set('task", "goal.set('ta|sk"), "job", [9, 10]),
+        (OLD.replace("self.shown = 1", "self.sho|wn = 1"), "seen", [6, 8]),
+        (OLD.replace("goal = B", "go|al = B"), "aim", [11, 12, 14]),
         ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
         ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
@@ -739,6 +777,22 @@ report(Base(), size=4)
         (PUT.replace("board='turn", "board='tu|rn"), "where it is defined is not known"),
         (PUT.replace("board = ", "bo|ard = "), "whether 'board' in line 9 is the same is not known"),
         (f"{PUT}print([f'{{one}}:1' for one in ('task', 'job')])\n".replace("goal='task", "goal='ta|sk"), "whether 'task' in line 18"),
+        (OLD.replace("import ccm", "import c|cm"), "'ccm' is defined in ccm, and keeps its name here"),
+        (OLD.replace("from ccm", "from c|cm"), "'ccm' .*keeps its name here"),
+        (OLD.replace("def start", "def st|art"), "'start' is defined in .*, and keeps its name here"),
+        (OLD.replace("def key", "def k|ey"), "'key_pressed' is defined in .*, and keeps its name here"),
+        (OLD.replace("busy:", "bu|sy:"), "'busy' is defined in .*, and keeps its name here"),
+        (
+            OLD.replace("import ccm", "import python_actr").replace("ccm", "python_actr").replace("def key", "def k|ey"),
+            "'key_pressed' is defined in .*, and keeps its name here",
+        ),
+        (
+            OLD.replace("import ccm", "from python_actr import *")
+            .replace("ccm.Model", "Model")
+            .replace("ccm.lib", "python_actr.lib")
+            .replace("def start", "def st|art"),
+            "'start' is defined in .*, and keeps its name here",
+        ),
         (PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass"), "'key_pressed' is defined in .*, and keeps its name here"),
         (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
         (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),

@@ -15,7 +15,10 @@ import jedi
 from jedi import settings
 from jedi.api.environment import InterpreterEnvironment
 from jedi.inference.compiled.subprocess import InferenceStateSameProcess
+from parso.file_io import KnownContentFileIO
 
+from actr3d.actr.compat import old_names
+from actr3d.actr.compat.old_names import is_old_name, is_package, text_of
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
@@ -35,6 +38,7 @@ KINDS = {
     "statement": "variable",
 }
 """The kinds of the page's completions, by jedi's."""
+_OLD_NAMES = Path(old_names.__file__).with_suffix("")
 MAX_ITEMS = 400
 LONGEST_DOCUMENTATION = 4_000
 """How much of a documentation is shown [characters]."""
@@ -43,8 +47,18 @@ LONGEST_DOCUMENTATION = 4_000
 _IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\([^)]*|[^\n()]*)\Z", re.MULTILINE)
 
 
-class _NothingImported(InferenceStateSameProcess):
-    """Gives jedi only the compiled modules that this process has already imported."""
+class _Modules(InferenceStateSameProcess):
+    """Gives jedi the modules that a text imports: only compiled ones that this process has already imported, and the library's old names."""
+
+    def get_module_info(self, *, full_name: str, **more: Any) -> tuple[Any, bool | None]:
+        """Returns the text of a module and whether it is a package; of an old name, the text of the names that the loader gives it."""
+        if not is_old_name(full_name):
+            return self.__getattr__("get_module_info")(full_name=full_name, **more)
+        text = text_of(full_name)
+        if text is None:
+            return None, None
+        # No file has this path. jedi keeps what it has read by path.
+        return KnownContentFileIO(str(_OLD_NAMES.joinpath(*full_name.split("."), "__init__.py")), text), is_package(full_name)
 
     def load_module(self, dotted_name: str, sys_path: list[str]) -> Any:
         """Returns a module that is loaded already; None for any other, of which jedi then knows only what its stubs say."""
@@ -56,7 +70,7 @@ class _Environment(InterpreterEnvironment):
 
     def get_inference_state_subprocess(self, inference_state: Any) -> InferenceStateSameProcess:
         """Returns jedi's access to compiled modules."""
-        return _NothingImported(inference_state)
+        return _Modules(inference_state)
 
 
 class PythonAnswers:
