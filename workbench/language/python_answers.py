@@ -19,10 +19,11 @@ from parso.file_io import KnownContentFileIO
 
 from actr3d.actr.compat import old_names
 from actr3d.actr.compat.old_names import is_old_name, is_package, text_of
+from actr3d.actr.kernel.read_attributes import attributes_read_of_itself
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
-from workbench.language.library_words import is_called_by_library, slots_given
+from workbench.language.library_words import is_called_by_library
 
 settings.auto_import_modules = []
 settings.allow_unsafe_interpreter_executions = False
@@ -48,7 +49,7 @@ _IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\(
 
 
 class _Modules(InferenceStateSameProcess):
-    """Gives jedi the modules that a text imports: only compiled ones that this process has already imported, and the library's old names."""
+    """Gives jedi the modules of a text: compiled ones only if this process has imported them already, and the library's old names."""
 
     def get_module_info(self, *, full_name: str, **more: Any) -> tuple[Any, bool | None]:
         """Returns the text of a module and whether it is a package; of an old name, the text of the names that the loader gives it."""
@@ -197,16 +198,27 @@ class PythonAnswers:
             found |= {f"{base.__module__}:{base.__qualname__}" for base in one.__mro__}
         return found
 
-    def slots_given(self, explicit: ExplicitText, path: str, expression: str) -> set[str]:
-        """Returns the slots that the library gives to the chunks of the class that an expression names, or of an object of it."""
+    def classes_of(self, explicit: ExplicitText, path: str, expression: str) -> list[type]:
+        """Returns the classes of the library that an expression names, or of which it is an object."""
         kinds = [_class(kind) for kind in self.kinds_of(explicit, path, expression) or ()]
-        return {slot for kind in kinds if kind is not None for slot in slots_given(kind)}
+        return [kind for kind in kinds if kind is not None]
 
     def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
         """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
         code = f"{explicit.text}\n\n{owner}()."
         found = self._script(f"{code}{name}", path).goto(code.count("\n") + 1, len(owner) + len("()."))
-        return "" if not found else "a method" if found[0].type == "function" else "an attribute"
+        kind = "" if not found else "a method" if found[0].type == "function" else "an attribute"
+        read = not kind and any(name in attributes_read_of_itself(one) for one in self.classes_of(explicit, path, owner))
+        return "an attribute" if read else kind
+
+    def may_have(self, path: str, kind: str, name: str) -> bool:
+        """Returns whether objects of a class of another text, as `kinds` names it, have an attribute; True if that is not known."""
+        module, _, owner = kind.partition(":")
+        if module in ("builtins", "types"):  # jedi knows `None` by a class that has no name in Python
+            return hasattr(getattr(builtins, owner, None), name)
+        code = f"from {module} import {owner.partition('.')[0]}\n{owner}()."
+        script = self._script(f"{code}{name}", path)
+        return not script.infer(2, len(owner) - 1) or bool(script.goto(2, len(owner) + len("().")))
 
 
 class PythonExpressions:

@@ -57,6 +57,12 @@ class Scopes:
         leaf = self._leaves.get(place)
         return leaf is not None and bool(leaf.is_definition())
 
+    def is_printed(self, place: tuple[int, int]) -> bool:
+        """Returns whether the text at a line and column is as such given to `print`."""
+        leaf = self._module.get_leaf_for_position(place)
+        given = None if leaf is None else leaf.parent if leaf.parent.type != "arglist" else leaf.parent.parent
+        return given is not None and given.type == "trailer" and given.get_previous_leaf().value == "print"
+
     def function_with_parameter(self, place: tuple[int, int]) -> str | None:
         """Returns the name of the function of which the plain name at a line and column is a parameter, empty for a `lambda`; else None."""
         if self._type_of_binding(place) != "param":

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from importlib.machinery import ModuleSpec
 from threading import RLock
 from types import ModuleType
-from typing import Any
 
 ROOTS = ("python_actr", "ccm")
 """The old names of the library."""
