@@ -786,7 +786,7 @@ def other(number):
         (PUT.replace("goal.set('task", "goal.set('ta|sk"), "job", [9, 10]),
         (SPLIT.replace("weight colour", "how much weight?").replace("weight:2", "wei|ght:2"), "mass", [6, 9]),
         (REPLACED.replace("store = Shelf()", "pass").replace("size = 2", "si|ze = 2"), "width", [5, 11, 18]),
-        (SEEN.replace("Vision(goal, where)", "SOSVision(goal)").replace("x = 1", "|x = 1"), "east", [4]),
+        (SEEN.replace("Vision(goal, where)", "SOSVision(goal)").replace("y = 2", "|y = 2"), "north", [5]),
         (SEEN.replace("vision = Vision(goal, where)", "").replace("value =", "val|ue ="), "worth", [7]),
         (FELT.replace("angle:?", "ang|le:?"), "turn", [9, 11]),
         (OLD.replace("self.shown = 1", "self.sho|wn = 1"), "seen", [6, 8]),
@@ -870,6 +870,18 @@ report(Base(), size=4)
             ),
             "'total' in line 23 is the same",
         ),
+        *(
+            (f"{REPLACED}\n{line}\n".replace("size = 2", "si|ze = 2"), "whether 'size:2' in line 11 is the same is not known")
+            for line in (
+                "setattr(Person(), 'store', Shelf())",
+                "Person(store=list())",
+                "Kind = type('Kind', (Person,), {'store': list()})",
+                "class Other(Person):\n    store: Model = list()",
+                "class Other(Person):\n    store = [Store, list][0]()",
+                "class Other(Person):\n    store = Store() if REPLACED else list()",
+                "class Beside(ACTR):\n    store = Shelf()\n\nclass Other(Beside, Person): pass",
+            )
+        ),
         ("class Box(Base):\n    def sta|rt(self): pass\n", "what Box inherits in line 1 is not known"),
         (
             "from nothing import Base\n\nclass Box(Base):\n    def start(self):\n        self.tot|al = 0\n",
@@ -887,6 +899,19 @@ report(Base(), size=4)
         ),
         (SEEN.replace('goal="text:a', 'goal="|x:1 text:a'), "'x' is read by Vision, and keeps its name here"),
         (SEEN.replace("Vision(goal, where)", "SOSVision(goal)").replace("value =", "val|ue ="), "'value' is read by SOSVision"),
+        *(
+            (
+                SEEN.replace("Vision(goal, where)", "SOSVision(goal)")
+                .replace("text:a", "x:1")
+                .replace("text = ", "te|xt = ")
+                .replace('x:1")', more),
+                why,
+            )
+            for more, why in (
+                ('x:1")\n        for one in ("text:a", "x:1"): vision.request(one)', "whether 'text:a' in line 14 is the same"),
+                ('x:1")\n        print([goal[one] for one in "text value".split()])', "whether 'text' in line 14 is the same"),
+            )
+        ),
         (SEEN.replace("text = ", "te|xt = "), "whether 'text:a' in line 13 is the same"),
         ("from actr3d.vision import Feature, Metres\n\nclass Pole(Feature):\n    wi|dth: Metres\n", "'width' is an attribute of Feature"),
         (FELT.replace("left torso", "left tor|so"), "'torso_yaw' may be a joint in the chunks of Motor, and keeps its name here"),

@@ -19,7 +19,7 @@ from parso.file_io import KnownContentFileIO
 
 from actr3d.actr.compat import old_names
 from actr3d.actr.compat.old_names import is_old_name, is_package, text_of
-from actr3d.actr.kernel.read_attributes import attributes_read_of_itself
+from actr3d.actr.kernel.read_attributes import is_read_of_itself
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
@@ -48,7 +48,7 @@ LONGEST_DOCUMENTATION = 4_000
 _IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\([^)]*|[^\n()]*)\Z", re.MULTILINE)
 
 
-class _Modules(InferenceStateSameProcess):
+class _TextsOfModules(InferenceStateSameProcess):
     """Gives jedi the modules of a text: compiled ones only if this process has imported them already, and the library's old names."""
 
     def get_module_info(self, *, full_name: str, **more: Any) -> tuple[Any, bool | None]:
@@ -71,7 +71,7 @@ class _Environment(InterpreterEnvironment):
 
     def get_inference_state_subprocess(self, inference_state: Any) -> InferenceStateSameProcess:
         """Returns jedi's access to compiled modules."""
-        return _Modules(inference_state)
+        return _TextsOfModules(inference_state)
 
 
 class PythonAnswers:
@@ -85,10 +85,12 @@ class PythonAnswers:
         self._folder = folder
         self._environment = _Environment()
         self._scripts: dict[tuple[str, str], jedi.Script] = {}
+        self._inferred: dict[tuple[str, str], set[str] | None] = {}
 
     def forget(self) -> None:
         """Forgets what was read: the files of the folder may have changed."""
         self._scripts.clear()
+        self._inferred.clear()
 
     def _script(self, text: str, path: str) -> jedi.Script:
         if (text, path) not in self._scripts:
@@ -179,7 +181,10 @@ class PythonAnswers:
     def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:
         """Returns the classes of an expression at the end of a text, as `kinds` does."""
         code = f"{explicit.text}\n\n{expression}"
-        return self._kinds(self._script(code, path).infer(code.count("\n") + 1, len(expression)), path)
+        if (code, path) not in self._inferred:
+            found = self._script(code, path).infer(code.count("\n") + 1, len(expression))
+            self._inferred[code, path] = self._kinds(found, path)
+        return self._inferred[code, path]
 
     def _kinds(self, found: list[Any], path: str) -> set[str] | None:
         own = self._folder / path
@@ -208,7 +213,7 @@ class PythonAnswers:
         code = f"{explicit.text}\n\n{owner}()."
         found = self._script(f"{code}{name}", path).goto(code.count("\n") + 1, len(owner) + len("()."))
         kind = "" if not found else "a method" if found[0].type == "function" else "an attribute"
-        read = not kind and any(name in attributes_read_of_itself(one) for one in self.classes_of(explicit, path, owner))
+        read = not kind and any(is_read_of_itself(one, name) for one in self.classes_of(explicit, path, owner))
         return "an attribute" if read else kind
 
     def may_have(self, path: str, kind: str, name: str) -> bool:

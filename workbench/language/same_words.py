@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from actr3d.actr.kernel.read_attributes import attributes_read, readers
+from actr3d.actr.kernel.read_attributes import READ, readers_of
 from actr3d.actr.lint.slot_names import GIVERS, READERS
 from workbench.language import actr_answers
 from workbench.language.answers import LanguageError, Renaming
@@ -29,6 +29,7 @@ _NAMES = re.compile(r"[\s,]*\w[\w.]*(?:[\s,]+\w[\w.]*)*[\s,]*")
 """Names that a program may separate: "weight colour"."""
 _QUOTES = ("'", '"')
 _PLANNING_UNITS = {"actr3d.sgoms.units:Ordered", "actr3d.sgoms.units:Situated"}
+_MODEL = "actr3d.actr.kernel.model:Model"
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -128,7 +129,10 @@ class SameWords:
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
         strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
-        if target.meaning.what == "slot" or self._may_be_in_strings(word, target):
+        seen = any(self._is_seen_as_chunk(kind) for kind in target.meaning.owners) if target.meaning.what == "member" else False
+        if seen:
+            strings |= self._in_strings(_SLOT, word)
+        if seen or target.meaning.what == "slot" or self._may_be_in_strings(word, target):
             strings |= self._as_values(word)
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
@@ -245,10 +249,18 @@ class SameWords:
         return Meaning(what=kinds.pop() or "", owners=frozenset[object]().union(*(one.owners for one in meanings if one is not None)))
 
     def _is_set_elsewhere(self, agent: str, part: str) -> bool:
-        """Returns whether the text sets a part of an agent other than in the body of a class: then it may be anything."""
+        """Returns whether the text sets a part of an agent other than by `part = Kind(...)` in the body of a class: it may be anything."""
         own = {one.name for one in self.model.lineage(agent)} | {one for one in self.model.agents if agent in self.model.above(one)}
-        found = (name for name in self.model.names if name.text == part and name.before and (name.before != ("self",) or name.agent in own))
-        return any(self._scopes.is_definition(self.explicit.place(name.start)) for name in found)
+        made = {one.parts[part].start for one in self.model.agents.values() if part in one.parts}
+        for name in self.model.names:
+            if name.text != part or (name.before in ((), ("self",)) and name.agent not in own and not name.keyword):
+                continue
+            place = self.explicit.place(name.start)
+            given = name.keyword and name.called[-1:] and name.called[-1] in self.model.agents
+            bound = (name.before or not name.method) and self._scopes.is_definition(place)
+            if given or (bound and not (name.start in made and self._scopes.is_made_by_call(place))):
+                return True
+        return bool(self._in_strings(_MEMBER, part))
 
     def _of_attribute(self, text: ChunkText, part: Part | None) -> Meaning | None:
         """Returns the meaning of a slot in a pattern of a part; None if it is not known."""
@@ -396,8 +408,13 @@ class SameWords:
 
     def _is_seen_as_chunk(self, kind: object) -> bool:
         """Returns whether vision may make a chunk of a thing of this class, with its attributes as slots."""
-        bases = {base for one in self.model.lineage(str(kind)) for base in one.bases} if kind in self.model.agents else set[str]()
-        return any(base.rpartition(".")[2] in ("Feature", "Model") for base in bases)
+        if kind not in self.model.agents:
+            return False
+        bases = {base.rpartition(".")[2] for one in self.model.lineage(str(kind)) for base in one.bases}
+        above = self.members.above(str(kind))
+        if bases & {"Feature", "Model"} or above is None:
+            return True
+        return _MODEL in above and any(issubclass(one, readers_of("visible")) for one in self._library_classes)  # an agent, too
 
     # -- what may not be renamed
 
@@ -426,7 +443,8 @@ class SameWords:
         self._check_read(word, at)
 
     def _check_read(self, word: str, at: int) -> None:
-        reader = next((kind for kind in self._library_classes if word in attributes_read(kind)), None)
+        readers = readers_of(word)
+        reader = next((kind for kind in (self._library_classes if readers else ()) if issubclass(kind, readers)), None)
         if reader is not None:
             raise LanguageError(f"'{word}' is read by {reader.__name__}, and keeps its name here", line=self._line(at))
 
@@ -436,8 +454,8 @@ class SameWords:
         agents = self.model.agents.values()
         named = {part.kind: f"{one.name}.{part.name}" for one in agents for part in one.parts.values()}
         named |= {base: base for one in agents for base in one.bases}
-        known = readers()
-        named |= {path: path for one in self.model.names if one.text in known for path in (".".join((*one.before, one.text)),)}
+        reading = {kind.__name__ for kind in READ}
+        named |= {path: path for one in self.model.names if one.text in reading for path in (".".join((*one.before, one.text)),)}
         expressions = [expression for kind, expression in named.items() if kind not in self.model.agents]
         found = (self._python.classes_of(self.explicit, self._path, expression) for expression in expressions)
         return list(dict.fromkeys(kind for kinds in found for kind in kinds))

@@ -57,6 +57,18 @@ class Scopes:
         leaf = self._leaves.get(place)
         return leaf is not None and bool(leaf.is_definition())
 
+    def is_made_by_call(self, place: tuple[int, int]) -> bool:
+        """Returns whether the value that is given to the name at a line and column is that of one call: `eyes = Eyes(visual)`."""
+        leaf = self._leaves.get(place)
+        definition = None if leaf is None else leaf.get_definition()
+        value = None if definition is None or definition.type != "expr_stmt" else definition.children[-1]
+        return (
+            value is not None
+            and value.type == "atom_expr"
+            and value.children[-1].type == "trailer"
+            and value.children[-1].children[0] == "("
+        )
+
     def is_printed(self, place: tuple[int, int]) -> bool:
         """Returns whether the text at a line and column is as such given to `print`."""
         leaf = self._module.get_leaf_for_position(place)
