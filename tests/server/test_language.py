@@ -888,6 +888,7 @@ report(Base(), size=4)
             "what Box inherits in line 3 is not known",
         ),
         (SPLIT.replace("weight:2", "wei|ght:2"), "whether 'weight' in line 7 is the same is not known"),
+        (SPLIT.replace("weight colour", "colour/weight").replace("weight:2", "wei|ght:2"), "whether 'colour/weight' in line 7 is the same"),
         (SPLIT.replace('"weight colour".split()', "('weight', 'colour')").replace("weight:2", "wei|ght:2"), "whether 'weight' in line 7"),
         (
             f"{CALLED}for name in 'slow,quick'.split(','): setattr(Machine(1), name, 1)\n".replace("quick =", "qui|ck ="),

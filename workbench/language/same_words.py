@@ -25,8 +25,8 @@ _MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,
 _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
 _STRINGS = {"member": _MEMBER, "slot": _SLOT, "variable": r"\?({0})\b"}
-_NAMES = re.compile(r"[\s,]*\w[\w.]*(?:[\s,]+\w[\w.]*)*[\s,]*")
-"""Names that a program may separate: "weight colour"."""
+_NAMES = re.compile(r"[\s,;|/]*\w[\w.]*(?:[\s,;|/]+\w[\w.]*)*[\s,;|/]*")
+"""Names that a program may separate: "weight colour", "weight,colour"."""
 _QUOTES = ("'", '"')
 _PLANNING_UNITS = {"actr3d.sgoms.units:Ordered", "actr3d.sgoms.units:Situated"}
 _MODEL = "actr3d.actr.kernel.model:Model"
