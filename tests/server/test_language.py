@@ -882,6 +882,18 @@ report(Base(), size=4)
                 "class Beside(ACTR):\n    store = Shelf()\n\nclass Other(Beside, Person): pass",
             )
         ),
+        *(
+            (
+                WHOLE.replace("goal = Buffer", "go|al = Buffer").replace("eyes = Eyes()", f"eyes = Eyes(); {line}"),
+                "in line 10 is the same is not known",
+            )
+            for line in ("pm = PMCompile(keep='goal')", "names = ['goal']", "pm = PMCompile(keep='eyes goal')")
+        ),
+        (
+            PUT.replace("board='turn", "board='inner.turn").replace("turn = ", "tu|rn = "),
+            "whether 'inner.turn:.mood' in line 9 is the same",
+        ),
+        (PUT.replace("board='turn", "board='inner.tu|rn"), "where it is defined is not known"),
         ("class Box(Base):\n    def sta|rt(self): pass\n", "what Box inherits in line 1 is not known"),
         (
             "from nothing import Base\n\nclass Box(Base):\n    def start(self):\n        self.tot|al = 0\n",

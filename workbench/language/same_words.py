@@ -134,6 +134,8 @@ class SameWords:
             strings |= self._in_strings(_SLOT, word)
         if seen or target.meaning.what == "slot" or self._may_be_in_strings(word, target):
             strings |= self._as_values(word)
+        elif self._is_part(word, target.meaning):
+            strings |= {at for at in self._as_values(word) if self._scopes.may_name_part(self.explicit.place(at))}
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
         if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
@@ -219,6 +221,8 @@ class SameWords:
             for slot in text.slots:
                 if slot.text == word:
                     yield WordPlace(start=slot.start, name=None, meaning=self._of_slot(text, slot))
+                elif word in slot.text.split("."):  # of what the path leads to
+                    yield WordPlace(start=slot.start + f".{slot.text}.".index(f".{word}."), name=None, meaning=None)
             for piece in self._variables(text):
                 if piece.text == word:
                     yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
@@ -236,6 +240,8 @@ class SameWords:
 
     def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
         """Returns the meaning of a slot in a text: an attribute in a pattern of a module or of the agent; None if it is not known."""
+        if "." in slot.text:  # a path
+            return None
         if text.kind != "pattern" or not slot.text.isidentifier():
             return Meaning(what="slot")
         if text.part == "self":

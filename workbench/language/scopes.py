@@ -8,6 +8,8 @@ from typing import Any, cast
 
 from parso.grammar import load_grammar
 
+from actr3d.actr.lint.slot_names import GIVERS, READERS
+
 Scope = tuple[str, str, tuple[int, int]]
 """The kind of a scope, its name, and where it begins."""
 _COMPREHENSIONS = ("comp_for", "sync_comp_for")
@@ -68,6 +70,17 @@ class Scopes:
             and value.children[-1].type == "trailer"
             and value.children[-1].children[0] == "("
         )
+
+    def may_name_part(self, place: tuple[int, int]) -> bool:
+        """Returns whether the text at a line and column may name a part: `PMCompile(keep="goal")`; no value in a chunk, key or test."""
+        node = self._module.get_leaf_for_position(place)
+        while node is not None and node.type in ("string", "argument", "arglist", "atom", "testlist_comp"):
+            node = node.parent
+        if node is None or node.type in ("comparison", "dictorsetmaker", "subscriptlist"):
+            return False
+        if node.type != "trailer":
+            return True
+        return node.children[0] == "(" and node.get_previous_leaf().value not in (*GIVERS, *READERS, "modify")
 
     def is_printed(self, place: tuple[int, int]) -> bool:
         """Returns whether the text at a line and column is as such given to `print`."""
