@@ -887,7 +887,12 @@ report(Base(), size=4)
                 WHOLE.replace("goal = Buffer", "go|al = Buffer").replace("eyes = Eyes()", f"eyes = Eyes(); {line}"),
                 "in line 10 is the same is not known",
             )
-            for line in ("pm = PMCompile(keep='goal')", "names = ['goal']", "pm = PMCompile(keep='eyes goal')")
+            for line in (
+                "pm = PMCompile(keep='goal')",
+                "names = ['goal']",
+                "pm = PMCompile(keep='eyes goal')",
+                "pm = PMCompile(request='goal.set')",
+            )
         ),
         (
             PUT.replace("board='turn", "board='inner.turn").replace("turn = ", "tu|rn = "),

@@ -192,16 +192,14 @@ class SameWords:
         }
 
     def _as_values(self, word: str) -> set[int]:
-        """Returns where a word stands in strings that hold nothing else, or only names that a program may separate."""
+        """Returns where a word stands in strings that hold only names, at the beginning of one: "memory", "memory.request goal"."""
         text, known = self.model.text, {(one.start, one.end) for one in self.model.texts}
         whole = (
             (begin, end) for begin, end in self.model.other_texts if text[begin - 1 : begin] in _QUOTES and text[end : end + 1] in _QUOTES
         )
         lists = [(begin, end) for begin, end in whole if (begin, end) not in known and _NAMES.fullmatch(text, begin, end)]
         lists = [(begin, end) for begin, end in lists if not self._scopes.is_printed(self.explicit.place(begin))]
-        return {
-            one.start() for begin, end in lists for one in re.compile(rf"(?<![\w.]){re.escape(word)}(?![\w.])").finditer(text, begin, end)
-        }
+        return {one.start() for begin, end in lists for one in re.compile(rf"(?<![\w.]){re.escape(word)}\b").finditer(text, begin, end)}
 
     def owner(self, at: int) -> str:
         """Returns the class of the text of which the word at a position is a member; empty if it is a member of none."""
