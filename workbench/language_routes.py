@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Request
@@ -9,7 +10,7 @@ from fastapi.responses import Response
 from pydantic import Field
 
 from actr3d.values import to_json
-from workbench.language.answers import LanguageError
+from workbench.language.answers import LanguageError, Unanswered
 from workbench.language.language_server import LONGEST_TEXT, LanguageServer
 from workbench.page_commands import PageMessage
 from workbench.routes import FilePath
@@ -33,12 +34,13 @@ class AskAboutText(PageMessage):
 async def language(request: Request, body: AskAboutText) -> Response:
     """Answers a question about a text, by reading it: neither the text nor the files beside it are executed.
 
-    A question without an answer is usual while someone writes, for example if reading takes too long: then `unanswered` says why.
+    A question without an answer is usual while someone writes, for example if reading takes too long: then `unanswered` says why, and
+    `line` which line of the text is the reason, if one is.
     """
     request.app.state.sessions.folder.locate(body.path)
     server: LanguageServer = request.app.state.language
     try:
         answer = await server.ask(body.model_dump_json().encode())
     except LanguageError as error:
-        answer = to_json({"unanswered": str(error)}).encode()
+        answer = to_json(asdict(Unanswered(unanswered=str(error), line=error.line))).encode()
     return Response(answer, media_type="application/json")

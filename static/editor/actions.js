@@ -13,8 +13,7 @@ async function answered(document, ask, name) {
   try {
     return await askAbout(document.state, ask, document.state.selection.main.head, name);
   } catch (error) {
-    const line = / in line (\d+)/.exec(error.message);
-    complain(error.message, "error", null, line ? { file: document.path, line: Number(line[1]) } : {});
+    complain(error.message, "error", null, error.line ? { file: document.path, line: error.line } : {});
     return null;
   }
 }

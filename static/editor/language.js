@@ -13,7 +13,8 @@ const newest = new Map();
 
 /** Asks about a state of the text that is shown: `complete`, `document item`, `document`, `signature`, `define`, `rename` or `format`;
  * `name` is a label of a completion, or a new name. One question at a time: of several that wait, only the newest of each kind is asked;
- * the others get null. Rejects if the server has no answer. */
+ * the others get null. Rejects if the server has no answer: with an Error, whose `line` is that of the text that is the reason, if
+ * there is one. */
 export function askAbout(state, ask, at = 0, name = "") {
   const path = read.path();
   if (path === null) return Promise.resolve(null);
@@ -27,7 +28,7 @@ export function askAbout(state, ask, at = 0, name = "") {
 
 async function answerTo(question) {
   const answer = await call("POST", "/api/language", question);
-  if (answer?.unanswered) throw new Error(answer.unanswered);
+  if (answer?.unanswered) throw Object.assign(new Error(answer.unanswered), { line: answer.line });
   return answer;
 }
 

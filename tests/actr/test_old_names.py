@@ -7,7 +7,7 @@ from types import ModuleType
 import pytest
 
 import actr3d.actr
-from actr3d.actr.compat.old_names import PACKAGES, ROOTS, aliases
+from actr3d.actr.compat.old_names import PACKAGES, ROOTS, aliases, text_of
 
 PARTS = (
     "",
@@ -157,3 +157,21 @@ def test_blocks_may_end_in_any_order() -> None:
         assert "ccm.lib.grid" not in sys.modules
     finally:
         del sys.modules["ccm"]
+
+
+@pytest.mark.parametrize("root", ROOTS)
+@pytest.mark.parametrize("part", PARTS)
+def test_the_text_of_an_old_module_gives_the_names_that_the_module_has(root: str, part: str) -> None:
+    name = f"{root}.{part}".rstrip(".")
+    text, read = text_of(name), dict[str, object]()
+    assert text is not None
+    with aliases():
+        module = vars(importlib.import_module(name))
+        exec(text, read)
+    own, given = ({key: value for key, value in names.items() if key[:2] != "__"} for names in (module, read))
+    assert own == given
+    assert module.get("__all__", []) == read["__all__"]
+
+
+def test_a_module_that_the_old_library_does_not_have_has_no_text() -> None:
+    assert [text_of(name) for name in ("ccm.nothing", "python_actr.lib.nothing", "random")] == [None] * 3

@@ -185,15 +185,33 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     expect(page.locator(".cm-activeLine")).to_have_text(re.compile("^from actr3d.vision import"))
 
 
-def test_a_name_that_is_not_renamed_leads_to_the_line_of_which_it_is_not_known(opened: Callable[[str], Page]) -> None:
-    page = opened("class Box:\n    def show(self): pass\n\ndef report(one):\n    one.show()\n")
-    at_end_of(page, "def show(self): pass")
-    for _ in range(len("(self): pass")):
+SEEN = "from actr3d.actr import *\n\nclass Spot(Model):\n    x = 1\n\nclass Person(ACTR):\n    vision = Vision(Buffer(), Buffer())\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "why", "line", "shown"),
+    [
+        (
+            "class Box:\n    def show(self): pass\n\ndef report(one):\n    one.show()\n",
+            "def show(self): pass",
+            "whether 'show' in line 5 is the same is not known",
+            5,
+            "one.show",
+        ),
+        (SEEN, "x = 1", "'x' is read by Vision, and keeps its name here", 4, "x = 1"),
+    ],
+)
+def test_a_name_that_is_not_renamed_leads_to_the_line_that_is_the_reason(
+    opened: Callable[[str], Page], text: str, place: str, why: str, line: int, shown: str
+) -> None:
+    page = opened(text)
+    at_end_of(page, place)
+    for _ in range(len(re.sub(r"^(def )?\w+", "", place))):
         page.keyboard.press("ArrowLeft")
     page.keyboard.press("F2")
-    expect(page.locator(".toast")).to_contain_text("whether 'show' in line 5 is the same is not known")
-    page.locator(".toast").get_by_role("button", name=":5").click()
-    expect(page.locator(".cm-activeLine")).to_have_text(re.compile("one.show"))
+    expect(page.locator(".toast")).to_contain_text(why)
+    page.locator(".toast").get_by_role("button", name=f":{line}").click()
+    expect(page.locator(".cm-activeLine")).to_have_text(re.compile(shown))
 
 
 @pytest.mark.slow

@@ -384,6 +384,26 @@ def test_where_a_name_is_defined(ask: Asked, text: str, found: str) -> None:
     assert text.replace("|", "").startswith(found, place["at"])
 
 
+@pytest.mark.parametrize(
+    ("text", "label"),
+    [
+        ("from ccm import *\nAC|", "ACTR"),
+        ("import ccm\nccm.log_every|", "log_everything"),
+        ("import ccm.lib.actr\nccm.lib.actr.Mem|", "Memory"),
+        ("from python_actr.lib.actr import Mem|", "Memory"),
+        (
+            "from ccm.lib.actr import *\nclass A(ACTR):\n    memory = Memory(Buffer())\n    def f(memory='x:1'):\n        memory.requ|",
+            "request",
+        ),
+    ],
+)
+def test_texts_with_the_old_names_of_the_library_are_completed_and_explained(ask: Asked, text: str, label: str) -> None:
+    assert ask.labels(text)[0] == label
+    begun = text.removesuffix("|")
+    whole = begun + label[next(n for n in range(len(label), -1, -1) if begun.endswith(label[:n])) :]
+    assert label in ask("document", f"{whole[:-1]}|{whole[-1]}")["title"]
+
+
 def test_where_names_of_other_files_are_defined(ask: Asked) -> None:
     beside = ask("define", "from beside import helps\nhel|ps(1)")
     assert (beside["path"], beside["line"]) == ("beside.py", 1)
@@ -619,6 +639,90 @@ class Pond(Model):
         self.fly = Fly()
         self.frog = Frog()
 """
+REPLACED = """from actr3d.actr import *
+
+class Store(Model):
+    busy = False
+    size = 2
+
+class Shelf(Model):
+    size = 3
+
+class Eyes(Model):
+    def seen(store="size:2"): pass
+
+class Person(ACTR):
+    goal = Buffer()
+    dm = Memory(goal)
+    store = Store()
+    eyes = Eyes()
+    def look(goal="task:x", dm="busy:False", store="size:2"): pass
+
+class Child(Person):
+    dm = Store()
+
+class Keeper(Child):
+    store = Shelf()
+"""
+SPLIT = """from actr3d.actr import *
+
+class Person(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("weight:2 colour:red")
+        for slot in "weight colour".split():
+            print(goal[slot])
+    def look(goal="weight:?w colour:red"):
+        print("the weight is", w)
+"""
+SEEN = """from actr3d.actr import *
+
+class Spot(Model):
+    x = 1
+    y = 2
+    text = "a"
+    value = 4
+
+class Person(ACTR):
+    goal = Buffer()
+    where = Buffer()
+    vision = Vision(goal, where)
+    def look(goal="text:a"):
+        vision.examine("x:1")
+
+class Room(Model):
+    def __init__(self):
+        self.spot = Spot()
+"""
+FELT = """from actr3d.actr import *
+from actr3d.motor import Motor
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    memory = Memory(felt)
+    motor = Motor(felt, memory)
+    def plan(goal="task:plan angle:?angle"):
+        memory.add("posture:left torso_yaw:?angle")
+        goal.set("task:go angle:3")
+    def feel(felt="posture:? torso_yaw:>10 hatch:5"): pass
+"""
+OLD = """import ccm
+from ccm.lib.actr import *
+
+class Screen(ccm.Model):
+    def start(self):
+        self.shown = 1
+    def key_pressed(self, key):
+        self.shown = key
+
+class Person(ACTR):
+    goal = Buffer()
+    memory = Memory(goal)
+    motor = Motor()
+    def look(goal="task:?task", memory="busy:False"):
+        motor.press_key(task)
+"""
 SCOPES = """from math import sqrt
 
 size = 3
@@ -680,7 +784,14 @@ def other(number):
         (PUT.replace("self='mood", "self='mo|od"), "feeling", [8, 9]),
         (PUT.replace("mood = ", "mo|od = "), "feeling", [8, 9]),
         (PUT.replace("goal.set('task", "goal.set('ta|sk"), "job", [9, 10]),
-        ("class Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [2, 4]),
+        (SPLIT.replace("weight colour", "how much weight?").replace("weight:2", "wei|ght:2"), "mass", [6, 9]),
+        (REPLACED.replace("store = Shelf()", "pass").replace("size = 2", "si|ze = 2"), "width", [5, 11, 18]),
+        (SEEN.replace("Vision(goal, where)", "SOSVision(goal)").replace("y = 2", "|y = 2"), "north", [5]),
+        (SEEN.replace("vision = Vision(goal, where)", "").replace("value =", "val|ue ="), "worth", [7]),
+        (FELT.replace("angle:?", "ang|le:?"), "turn", [9, 11]),
+        (OLD.replace("self.shown = 1", "self.sho|wn = 1"), "seen", [6, 8]),
+        (OLD.replace("goal = B", "go|al = B"), "aim", [11, 12, 14]),
+        ("from enum import Enum\nclass Colour(Enum):\n    GR|EEN = 1\n\nprint(Colour['GREEN'])\n", "RED", [3, 5]),
         ('from collections import namedtuple\npoint = namedtuple("point", "east")\nea|st = point(1).east\n', "north", [3]),
     ],
 )
@@ -739,6 +850,106 @@ report(Base(), size=4)
         (PUT.replace("board='turn", "board='tu|rn"), "where it is defined is not known"),
         (PUT.replace("board = ", "bo|ard = "), "whether 'board' in line 9 is the same is not known"),
         (f"{PUT}print([f'{{one}}:1' for one in ('task', 'job')])\n".replace("goal='task", "goal='ta|sk"), "whether 'task' in line 18"),
+        (REPLACED.replace("size = 2", "si|ze = 2"), "whether 'size:2' in line 11 is the same is not known"),
+        (REPLACED.replace("size = 3", "si|ze = 3"), "whether 'size:2' in line 11 is the same is not known"),
+        (REPLACED.replace('store="si', 'store="s|i', 1), "whether 'size:2' in line 11 is the same is not known"),
+        (REPLACED.replace('dm="bus', 'dm="b|us'), "whether 'busy:False' in line 18 is the same is not known"),
+        (REPLACED.replace("busy =", "bu|sy ="), "whether 'busy:False' in line 18 is the same is not known"),
+        (
+            f"{REPLACED}\none = Person()\none.store = Memory(None)\n".replace("size = 2", "si|ze = 2"),
+            "whether 'size:2' in line 11 is the same",
+        ),
+        (
+            f"{REPLACED}\none = Person()\none.store = Memory(None)\n".replace('store="si', 'store="s|i', 1),
+            "where it is defined is not known",
+        ),
+        (REPLACED.replace("store = Shelf", "store = Buffer").replace("size = 2", "si|ze = 2"), "whether 'size:2' in line 11 is the same"),
+        (
+            f"{TOTAL}\ndef shown(one: Stroop | Thing | None):\n    return one.total\n\nclass Thing(Other): pass\n".replace(
+                "model.total", "model.to|tal"
+            ),
+            "'total' in line 23 is the same",
+        ),
+        *(
+            (f"{REPLACED}\n{line}\n".replace("size = 2", "si|ze = 2"), "whether 'size:2' in line 11 is the same is not known")
+            for line in (
+                "setattr(Person(), 'store', Shelf())",
+                "Person(store=list())",
+                "Kind = type('Kind', (Person,), {'store': list()})",
+                "class Other(Person):\n    store: Model = list()",
+                "class Other(Person):\n    store = [Store, list][0]()",
+                "class Other(Person):\n    store = Store() if REPLACED else list()",
+                "class Beside(ACTR):\n    store = Shelf()\n\nclass Other(Beside, Person): pass",
+            )
+        ),
+        *(
+            (
+                WHOLE.replace("goal = Buffer", "go|al = Buffer").replace("eyes = Eyes()", f"eyes = Eyes(); {line}"),
+                "in line 10 is the same is not known",
+            )
+            for line in (
+                "pm = PMCompile(keep='goal')",
+                "names = ['goal']",
+                "pm = PMCompile(keep='eyes goal')",
+                "pm = PMCompile(request='goal.set')",
+            )
+        ),
+        (
+            PUT.replace("board='turn", "board='inner.turn").replace("turn = ", "tu|rn = "),
+            "whether 'inner.turn:.mood' in line 9 is the same",
+        ),
+        (PUT.replace("board='turn", "board='inner.tu|rn"), "where it is defined is not known"),
+        ("class Box(Base):\n    def sta|rt(self): pass\n", "what Box inherits in line 1 is not known"),
+        (
+            "from nothing import Base\n\nclass Box(Base):\n    def start(self):\n        self.tot|al = 0\n",
+            "what Box inherits in line 3 is not known",
+        ),
+        (SPLIT.replace("weight:2", "wei|ght:2"), "whether 'weight' in line 7 is the same is not known"),
+        (SPLIT.replace("weight colour", "colour/weight").replace("weight:2", "wei|ght:2"), "whether 'colour/weight' in line 7 is the same"),
+        (SPLIT.replace('"weight colour".split()', "('weight', 'colour')").replace("weight:2", "wei|ght:2"), "whether 'weight' in line 7"),
+        (
+            f"{CALLED}for name in 'slow,quick'.split(','): setattr(Machine(1), name, 1)\n".replace("quick =", "qui|ck ="),
+            "whether .* in line 13 is the same",
+        ),
+        *(
+            (SEEN.replace(f"{name} = ", f"{name[0]}|{name[1:]} = ", 1), f"'{name}' is read by Vision, and keeps its name")
+            for name in ("x", "y")
+        ),
+        (SEEN.replace('goal="text:a', 'goal="|x:1 text:a'), "'x' is read by Vision, and keeps its name here"),
+        (SEEN.replace("Vision(goal, where)", "SOSVision(goal)").replace("value =", "val|ue ="), "'value' is read by SOSVision"),
+        *(
+            (
+                SEEN.replace("Vision(goal, where)", "SOSVision(goal)")
+                .replace("text:a", "x:1")
+                .replace("text = ", "te|xt = ")
+                .replace('x:1")', more),
+                why,
+            )
+            for more, why in (
+                ('x:1")\n        for one in ("text:a", "x:1"): vision.request(one)', "whether 'text:a' in line 14 is the same"),
+                ('x:1")\n        print([goal[one] for one in "text value".split()])', "whether 'text' in line 14 is the same"),
+            )
+        ),
+        (SEEN.replace("text = ", "te|xt = "), "whether 'text:a' in line 13 is the same"),
+        ("from actr3d.vision import Feature, Metres\n\nclass Pole(Feature):\n    wi|dth: Metres\n", "'width' is an attribute of Feature"),
+        (FELT.replace("left torso", "left tor|so"), "'torso_yaw' may be a joint in the chunks of Motor, and keeps its name here"),
+        (FELT.replace("hatch", "hat|ch"), "'hatch' may be a joint in the chunks of Motor, and keeps its name here"),
+        (OLD.replace("import ccm", "import c|cm"), "'ccm' is defined in ccm, and keeps its name here"),
+        (OLD.replace("from ccm", "from c|cm"), "'ccm' .*keeps its name here"),
+        (OLD.replace("def start", "def st|art"), "'start' is defined in .*, and keeps its name here"),
+        (OLD.replace("def key", "def k|ey"), "'key_pressed' is defined in .*, and keeps its name here"),
+        (OLD.replace("busy:", "bu|sy:"), "'busy' is defined in .*, and keeps its name here"),
+        (
+            OLD.replace("import ccm", "import python_actr").replace("ccm", "python_actr").replace("def key", "def k|ey"),
+            "'key_pressed' is defined in .*, and keeps its name here",
+        ),
+        (
+            OLD.replace("import ccm", "from python_actr import *")
+            .replace("ccm.Model", "Model")
+            .replace("ccm.lib", "python_actr.lib")
+            .replace("def start", "def st|art"),
+            "'start' is defined in .*, and keeps its name here",
+        ),
         (PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass"), "'key_pressed' is defined in .*, and keeps its name here"),
         (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
         (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),
@@ -1044,11 +1255,11 @@ def test_the_route_says_why_there_is_no_answer_and_refuses_what_is_no_question(
         return answer.status, json.loads(answer.body)
 
     assert posted() == (200, {"text": "x = 1\n"})
-    assert posted(text="x =") == (200, {"unanswered": "the text was not formatted: line 1: Expected an expression"})
+    assert posted(text="x =") == (200, {"unanswered": "the text was not formatted: line 1: Expected an expression", "line": 1})
     with monkeypatch.context() as now:
         now.setattr(language_server, "ANSWER_TIME", 0.3)
         slow = posted(ask="complete", text="(" * 150_000, at=150_000)
-    assert slow == (200, {"unanswered": "reading this text takes longer than 0.3 s"})
+    assert slow == (200, {"unanswered": "reading this text takes longer than 0.3 s", "line": None})
     for status, more in (
         (422, {"text": "x" * (LONGEST_TEXT + 1)}),
         (422, {"ask": "execute"}),

@@ -8,7 +8,26 @@ from actr3d.errors import Actr3dError
 
 
 class LanguageError(Actr3dError):
-    """A question about a text cannot be answered; the message says why."""
+    """A question about a text cannot be answered.
+
+    Args:
+        message: Why.
+        line: The line of the text that is the reason, counted from 1; None for none.
+    """
+
+    def __init__(self, message: str, *, line: int | None = None) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unanswered:
+    """The answer to a question that cannot be answered."""
+
+    unanswered: str
+    """Why."""
+    line: int | None
+    """The line of the text that is the reason."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -68,6 +68,20 @@ class ClassMembers:
         """Returns whether a class itself defines or uses a member."""
         return any(True for _ in self._own(agent, member))
 
+    def may_have(self, kind: str, member: str) -> bool:
+        """Returns whether objects of a class, those of other texts as `module:name`, may have a member."""
+        if kind not in self._model.agents:
+            return self._python.may_have(self._path, kind, member)
+        return any(self.has(one, member) for one in (kind, *self._model.above(kind))) or bool(self.library(kind, member))
+
+    def unknown_base(self, owner: str, member: str) -> tuple[str, str] | None:
+        """Returns a class that has a member, and one of which it inherits without the text showing what; None if there is none."""
+        for agent in sorted(self.family(owner, member)):
+            for base in self._model.agents[agent].bases:
+                if base not in self._model.agents and self._python.kinds_of(self._explicit, self._path, base) is None:
+                    return agent, base
+        return None
+
     def library(self, owner: str, member: str) -> str:
         """Returns what a member replaces of a class of another text, such as "a method of ACTR"; empty if it is the text's own."""
         for agent in sorted(self.family(owner, member)):

@@ -64,7 +64,7 @@ class LanguageServer(Receiver):
         finally:
             self._waiting -= 1
         if reply.error is not None:
-            raise LanguageError(reply.error)
+            raise LanguageError(reply.error, line=reply.line)
         return reply.result
 
     async def _ask(self, question: bytes) -> Reply:

@@ -9,6 +9,7 @@ import msgspec
 
 import actr3d
 from actr3d.errors import Actr3dError
+from workbench.language.answers import LanguageError
 from workbench.worker.channel import Channel
 from workbench.worker.messages import Do, Leave, Reply, shortened
 
@@ -26,6 +27,8 @@ def serve(channel: Channel) -> None:
             try:
                 answer = assistant.answer(decoder.decode(request.command))
                 channel.post(Reply(id=request.id, result=msgspec.json.encode(answer)))
+            except LanguageError as error:
+                channel.post(Reply(id=request.id, error=shortened(str(error)), line=error.line))
             except Actr3dError as error:
                 channel.post(Reply(id=request.id, error=shortened(str(error))))
             except MemoryError:

@@ -15,9 +15,11 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.lint.slot_inference import slots_of
 from actr3d.actr.procedural.production import defaults_of
 from actr3d.actr.procedural.production_system import ProductionSystem
+from actr3d.motor import Motor
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
+from actr3d.world.bodies.mannequin_limits import LIMITS
 from actr3d.world.body import ACTUATORS, SENSORS
 from workbench.language.field_texts import parameter_text, texts_of
 
@@ -92,6 +94,17 @@ def answers_of(kind: str) -> tuple[Word, ...]:
 def features_of(kind: str) -> tuple[Word, ...]:
     """Returns the features that a module searches for, which its requests and chunks name in the slot `feature`."""
     return features() if kind == "Vision" else ()
+
+
+@cache
+def joints() -> frozenset[str]:
+    """Returns the names of the joints of the library's persons, which the motor module's chunks have as slots."""
+    return frozenset(f"{side}{part}_{axis}" for part, axes in LIMITS.items() for axis in axes for side in ("", "left_", "right_"))
+
+
+def gives_joints(kind: type) -> bool:
+    """Returns whether a class of the library gives chunks the joints of a body as slots, of which a text knows nothing."""
+    return issubclass(kind, Motor)
 
 
 def slots_given(kind: type) -> set[str]:

@@ -267,6 +267,25 @@ class ModelText:
         """Returns the parts that a class sees by name."""
         return {name: part for one in reversed(self.lineage(agent)) for name, part in one.parts.items()}
 
+    def may_be(self, agent: str, name: str) -> list[Part | None]:
+        """Returns the parts that a name may mean in a class: other classes may replace a part; None stands for one that is not shown."""
+        found: list[Part | None] = []
+        asked: set[str] = set()
+        waiting = [agent]
+        for one in waiting:
+            if one in asked:
+                continue
+            asked.add(one)
+            above = self.above(one)
+            nearest = next((self.agents[base].parts[name] for base in (one, *above) if name in self.agents[base].parts), None)
+            below = [other for other in self.agents if one in self.above(other)]
+            beside = {base for other in below for base in (other, *self.above(other)) if base not in (one, *above)}
+            found += [self.agents[other].parts[name] for other in sorted(beside) if name in self.agents[other].parts]
+            holders = [other.name for kind in (one, *below) for other in self.holders(kind)] if nearest is None else []
+            found += [nearest] if nearest is not None or not holders else []
+            waiting += holders
+        return found
+
     def variables_of(self, method: str) -> list[Piece]:
         """Returns the variables in the patterns and requests of a method."""
         return [piece for one in self.texts if one.method == method for piece in one.pieces if piece.is_variable]
@@ -334,7 +353,13 @@ class ModelText:
             self._define(self._tokens[number - 1], token)
         elif bracket is not None and bracket.kind == "def" and begins:
             self._add_parameter(bracket.names[0], token.text, has_default=keyword or self._text(number - 1)[:1] == "*")
-        elif bracket is not None and bracket.kind == "class" and self._blocks and self._agent in self.agents:
+        elif (
+            bracket is not None
+            and bracket.kind == "class"
+            and self._text(number + 1) != "="
+            and self._blocks
+            and self._agent in self.agents
+        ):
             bases, before = self.agents[self._agent].bases, self._before(number)
             if before:
                 bases.pop()  # what stands before the dot

@@ -15,11 +15,15 @@ import jedi
 from jedi import settings
 from jedi.api.environment import InterpreterEnvironment
 from jedi.inference.compiled.subprocess import InferenceStateSameProcess
+from parso.file_io import KnownContentFileIO
 
+from actr3d.actr.compat import old_names
+from actr3d.actr.compat.old_names import is_old_name, is_package, text_of
+from actr3d.actr.kernel.read_attributes import is_read_of_itself
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
-from workbench.language.library_words import is_called_by_library, slots_given
+from workbench.language.library_words import is_called_by_library
 
 settings.auto_import_modules = []
 settings.allow_unsafe_interpreter_executions = False
@@ -35,6 +39,7 @@ KINDS = {
     "statement": "variable",
 }
 """The kinds of the page's completions, by jedi's."""
+_OLD_NAMES = Path(old_names.__file__).with_suffix("")
 MAX_ITEMS = 400
 LONGEST_DOCUMENTATION = 4_000
 """How much of a documentation is shown [characters]."""
@@ -43,8 +48,18 @@ LONGEST_DOCUMENTATION = 4_000
 _IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\([^)]*|[^\n()]*)\Z", re.MULTILINE)
 
 
-class _NothingImported(InferenceStateSameProcess):
-    """Gives jedi only the compiled modules that this process has already imported."""
+class _TextsOfModules(InferenceStateSameProcess):
+    """Gives jedi the modules of a text: compiled ones only if this process has imported them already, and the library's old names."""
+
+    def get_module_info(self, *, full_name: str, **more: Any) -> tuple[Any, bool | None]:
+        """Returns the text of a module and whether it is a package; of an old name, the text of the names that the loader gives it."""
+        if not is_old_name(full_name):
+            return self.__getattr__("get_module_info")(full_name=full_name, **more)
+        text = text_of(full_name)
+        if text is None:
+            return None, None
+        # No file has this path. jedi keeps what it has read by path.
+        return KnownContentFileIO(str(_OLD_NAMES.joinpath(*full_name.split("."), "__init__.py")), text), is_package(full_name)
 
     def load_module(self, dotted_name: str, sys_path: list[str]) -> Any:
         """Returns a module that is loaded already; None for any other, of which jedi then knows only what its stubs say."""
@@ -56,7 +71,7 @@ class _Environment(InterpreterEnvironment):
 
     def get_inference_state_subprocess(self, inference_state: Any) -> InferenceStateSameProcess:
         """Returns jedi's access to compiled modules."""
-        return _NothingImported(inference_state)
+        return _TextsOfModules(inference_state)
 
 
 class PythonAnswers:
@@ -70,10 +85,12 @@ class PythonAnswers:
         self._folder = folder
         self._environment = _Environment()
         self._scripts: dict[tuple[str, str], jedi.Script] = {}
+        self._inferred: dict[tuple[str, str], set[str] | None] = {}
 
     def forget(self) -> None:
         """Forgets what was read: the files of the folder may have changed."""
         self._scripts.clear()
+        self._inferred.clear()
 
     def _script(self, text: str, path: str) -> jedi.Script:
         if (text, path) not in self._scripts:
@@ -164,7 +181,10 @@ class PythonAnswers:
     def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:
         """Returns the classes of an expression at the end of a text, as `kinds` does."""
         code = f"{explicit.text}\n\n{expression}"
-        return self._kinds(self._script(code, path).infer(code.count("\n") + 1, len(expression)), path)
+        if (code, path) not in self._inferred:
+            found = self._script(code, path).infer(code.count("\n") + 1, len(expression))
+            self._inferred[code, path] = self._kinds(found, path)
+        return self._inferred[code, path]
 
     def _kinds(self, found: list[Any], path: str) -> set[str] | None:
         own = self._folder / path
@@ -183,16 +203,27 @@ class PythonAnswers:
             found |= {f"{base.__module__}:{base.__qualname__}" for base in one.__mro__}
         return found
 
-    def slots_given(self, explicit: ExplicitText, path: str, expression: str) -> set[str]:
-        """Returns the slots that the library gives to the chunks of the class that an expression names, or of an object of it."""
+    def classes_of(self, explicit: ExplicitText, path: str, expression: str) -> list[type]:
+        """Returns the classes of the library that an expression names, or of which it is an object."""
         kinds = [_class(kind) for kind in self.kinds_of(explicit, path, expression) or ()]
-        return {slot for kind in kinds if kind is not None for slot in slots_given(kind)}
+        return [kind for kind in kinds if kind is not None]
 
     def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
         """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
         code = f"{explicit.text}\n\n{owner}()."
         found = self._script(f"{code}{name}", path).goto(code.count("\n") + 1, len(owner) + len("()."))
-        return "" if not found else "a method" if found[0].type == "function" else "an attribute"
+        kind = "" if not found else "a method" if found[0].type == "function" else "an attribute"
+        read = not kind and any(is_read_of_itself(one, name) for one in self.classes_of(explicit, path, owner))
+        return "an attribute" if read else kind
+
+    def may_have(self, path: str, kind: str, name: str) -> bool:
+        """Returns whether objects of a class of another text, as `kinds` names it, have an attribute; True if that is not known."""
+        module, _, owner = kind.partition(":")
+        if module in ("builtins", "types"):  # jedi knows `None` by a class that has no name in Python
+            return hasattr(getattr(builtins, owner, None), name)
+        code = f"from {module} import {owner.partition('.')[0]}\n{owner}()."
+        script = self._script(f"{code}{name}", path)
+        return not script.infer(2, len(owner) - 1) or bool(script.goto(2, len(owner) + len("().")))
 
 
 class PythonExpressions:

@@ -152,7 +152,7 @@ class Assistant:
         different = same ^ set(starts)
         if different:
             line = text.count("\n", 0, min(different)) + 1
-            raise LanguageError(f"'{new}' already has a meaning in line {line}")
+            raise LanguageError(f"'{new}' already has a meaning in line {line}", line=line)
 
     @staticmethod
     def _is_taken(model: ModelText, found: Renaming, at: int, new: str) -> bool:
@@ -226,5 +226,6 @@ def formatted(text: str) -> str:
     if done.returncode != 0:
         said = done.stderr.decode(errors="replace").strip()
         found = re.search(r"model\.py:(\d+):\d+: (.*)", said)
-        raise LanguageError(f"the text was not formatted: {f'line {found[1]}: {found[2]}' if found else said[:300]}")
+        reason = f"line {found[1]}: {found[2]}" if found else said[:300]
+        raise LanguageError(f"the text was not formatted: {reason}", line=int(found[1]) if found else None)
     return done.stdout.decode()

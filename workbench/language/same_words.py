@@ -9,11 +9,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from actr3d.actr.kernel.read_attributes import READ, readers_of
 from actr3d.actr.lint.slot_names import GIVERS, READERS
 from workbench.language import actr_answers
 from workbench.language.answers import LanguageError, Renaming
 from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
+from workbench.language.library_words import gives_joints, joints, slots_given
 from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, SlotName
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
@@ -23,8 +25,11 @@ _MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,
 _SLOT = r"""(?<![^\s"'])({0}):(?![\s"'=])"""
 """A slot and its value in a string."""
 _STRINGS = {"member": _MEMBER, "slot": _SLOT, "variable": r"\?({0})\b"}
-_VALUE = r"""["']({0})["']"""
+_NAMES = re.compile(r"[\s,;|/]*\w[\w.]*(?:[\s,;|/]+\w[\w.]*)*[\s,;|/]*")
+"""Names that a program may separate: "weight colour", "weight,colour"."""
+_QUOTES = ("'", '"')
 _PLANNING_UNITS = {"actr3d.sgoms.units:Ordered", "actr3d.sgoms.units:Situated"}
+_MODEL = "actr3d.actr.kernel.model:Model"
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -93,25 +98,25 @@ class SameWords:
         meaning = target.meaning
         unknown = f"'{word}' cannot be renamed: where it is defined is not known"
         if meaning is None and name is not None and not name.before and not (name.keyword and name.called):
-            self._check_members([one.name for one in self.model.lineage(name.agent)], word)
+            self._check_members([one.name for one in self.model.lineage(name.agent)], word, start)
         if meaning is None or meaning == _LIBRARY:
             raise LanguageError(unknown)
         if meaning.what == "slot":
-            self._check_slot(word)
+            self._check_slot(word, start)
         what = "name" if meaning.what in ("local", "member") else meaning.what
         if meaning.what == "member":
             own = sorted(str(one) for one in meaning.owners if one in self.model.agents)
             if not own:
                 kind = next(iter(sorted(str(one) for one in meaning.owners if one)), "").replace(":", ".").lstrip(".")
                 raise LanguageError(f"'{word}' is defined in {kind}, and keeps its name here" if kind else unknown)
-            self._check_members(own[:1], word)
+            self._check_members(own, word, start)
             if self._is_part(word, meaning):
                 what = "part"
         starts, unproven = self.places(word, start)
         if unproven:
-            line = self.model.text.count("\n", 0, min(unproven)) + 1
+            line = self._line(min(unproven))
             shown = self._written(min(unproven)) or word
-            raise LanguageError(f"'{word}' cannot be renamed: whether '{shown}' in line {line} is the same is not known")
+            raise LanguageError(f"'{word}' cannot be renamed: whether '{shown}' in line {line} is the same is not known", line=line)
         if meaning.what == "member" and what != "part" and not any(self._defines(place) for place in starts):
             raise LanguageError(unknown)
         return Renaming(name=word, what=what, starts=sorted(starts))
@@ -124,14 +129,22 @@ class SameWords:
         same, unproven = ({at for at, one in found.items() if one is answer} for answer in (True, None))
         assert target.meaning is not None
         strings = self._in_strings(_STRINGS.get(target.meaning.what, ""), word)
-        if target.meaning.what == "slot" or self._may_be_in_strings(word, target):
-            strings |= self._in_strings(_VALUE, word)
+        seen = any(self._is_seen_as_chunk(kind) for kind in target.meaning.owners) if target.meaning.what == "member" else False
+        if seen:
+            strings |= self._in_strings(_SLOT, word)
+        if seen or target.meaning.what == "slot" or self._may_be_in_strings(word, target):
+            strings |= self._as_values(word)
+        elif self._is_part(word, target.meaning):
+            strings |= {at for at in self._as_values(word) if self._scopes.may_name_part(self.explicit.place(at))}
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
         if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
-            strings |= {*values, *self._in_strings(_VALUE, word)}
+            strings |= {*values, *self._as_values(word)}
         return same, unproven | (strings - same)
+
+    def _line(self, at: int) -> int:
+        return self.model.text.count("\n", 0, at) + 1
 
     def _may_be_in_strings(self, word: str, target: WordPlace) -> bool:
         """Returns whether a name may be computed: that of a parameter for `f(**values)`, or of a member for `getattr(one, name)`."""
@@ -178,6 +191,16 @@ class SameWords:
             if any(begin <= at < end for begin, end in self.model.other_texts) and not any(begin <= at < end for begin, end in known)
         }
 
+    def _as_values(self, word: str) -> set[int]:
+        """Returns where a word stands in strings that hold only names, at the beginning of one: "memory", "memory.request goal"."""
+        text, known = self.model.text, {(one.start, one.end) for one in self.model.texts}
+        whole = (
+            (begin, end) for begin, end in self.model.other_texts if text[begin - 1 : begin] in _QUOTES and text[end : end + 1] in _QUOTES
+        )
+        lists = [(begin, end) for begin, end in whole if (begin, end) not in known and _NAMES.fullmatch(text, begin, end)]
+        lists = [(begin, end) for begin, end in lists if not self._scopes.is_printed(self.explicit.place(begin))]
+        return {one.start() for begin, end in lists for one in re.compile(rf"(?<![\w.]){re.escape(word)}\b").finditer(text, begin, end)}
+
     def owner(self, at: int) -> str:
         """Returns the class of the text of which the word at a position is a member; empty if it is a member of none."""
         name = self.model.name_at(at)
@@ -196,6 +219,8 @@ class SameWords:
             for slot in text.slots:
                 if slot.text == word:
                     yield WordPlace(start=slot.start, name=None, meaning=self._of_slot(text, slot))
+                elif word in slot.text.split("."):  # of what the path leads to
+                    yield WordPlace(start=slot.start + f".{slot.text}.".index(f".{word}."), name=None, meaning=None)
             for piece in self._variables(text):
                 if piece.text == word:
                     yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
@@ -213,14 +238,39 @@ class SameWords:
 
     def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
         """Returns the meaning of a slot in a text: an attribute in a pattern of a module or of the agent; None if it is not known."""
+        if "." in slot.text:  # a path
+            return None
         if text.kind != "pattern" or not slot.text.isidentifier():
             return Meaning(what="slot")
         if text.part == "self":
             return Meaning(what="member", owners=frozenset({text.agent}))
-        part = self.model.parts_of(text.agent).get(text.part)
+        if self._is_set_elsewhere(text.agent, text.part):
+            return None
+        meanings = [self._of_attribute(text, part) for part in self.model.may_be(text.agent, text.part)]
+        kinds = {None if one is None else one.what for one in meanings}
+        if len(kinds) > 1 or None in kinds:
+            return None
+        return Meaning(what=kinds.pop() or "", owners=frozenset[object]().union(*(one.owners for one in meanings if one is not None)))
+
+    def _is_set_elsewhere(self, agent: str, part: str) -> bool:
+        """Returns whether the text sets a part of an agent other than by `part = Kind(...)` in the body of a class: it may be anything."""
+        own = {one.name for one in self.model.lineage(agent)} | {one for one in self.model.agents if agent in self.model.above(one)}
+        made = {one.parts[part].start for one in self.model.agents.values() if part in one.parts}
+        for name in self.model.names:
+            if name.text != part or (name.before in ((), ("self",)) and name.agent not in own and not name.keyword):
+                continue
+            place = self.explicit.place(name.start)
+            given = name.keyword and name.called[-1:] and name.called[-1] in self.model.agents
+            bound = (name.before or not name.method) and self._scopes.is_definition(place)
+            if given or (bound and not (name.start in made and self._scopes.is_made_by_call(place))):
+                return True
+        return bool(self._in_strings(_MEMBER, part))
+
+    def _of_attribute(self, text: ChunkText, part: Part | None) -> Meaning | None:
+        """Returns the meaning of a slot in a pattern of a part; None if it is not known."""
         if part is None:  # of a class of the library; otherwise, of what the agent is put into
             return Meaning(what="slot") if self.members.library(text.agent, text.part) else None
-        if part.kind == "Buffer":
+        if part.kind == "Buffer" and "Buffer" not in self.model.agents:
             return Meaning(what="slot")
         kinds, above = self._of_part(part)
         if kinds is None or above is None:
@@ -330,9 +380,8 @@ class SameWords:
             return one.owners == two.owners
         owner = min(str(kind) for kind in one.owners if kind in self.model.agents)
         family = self.members.family(owner, word)
-        mixed = any(kind in self.model.agents and kind not in family and self.members.has(str(kind), word) for kind in two.owners)
         if two.owners & family:
-            return None if mixed else True
+            return None if any(self.members.may_have(str(kind), word) for kind in two.owners - family) else True
         above = self.members.above_all(family)
         unknown = above is None and any(":" in str(kind) and not str(kind).startswith("builtins:") for kind in two.owners)
         return None if unknown or two.owners & (above or set()) else False
@@ -363,8 +412,13 @@ class SameWords:
 
     def _is_seen_as_chunk(self, kind: object) -> bool:
         """Returns whether vision may make a chunk of a thing of this class, with its attributes as slots."""
-        bases = {base for one in self.model.lineage(str(kind)) for base in one.bases} if kind in self.model.agents else set[str]()
-        return any(base.rpartition(".")[2] in ("Feature", "Model") for base in bases)
+        if kind not in self.model.agents:
+            return False
+        bases = {base.rpartition(".")[2] for one in self.model.lineage(str(kind)) for base in one.bases}
+        above = self.members.above(str(kind))
+        if bases & {"Feature", "Model"} or above is None:
+            return True
+        return _MODEL in above and any(issubclass(one, readers_of("visible")) for one in self._library_classes)  # an agent, too
 
     # -- what may not be renamed
 
@@ -381,23 +435,54 @@ class SameWords:
         if defined is not None and defined.at is None:
             raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
 
-    def _check_members(self, agents: list[str], word: str) -> None:
+    def _check_members(self, agents: list[str], word: str, at: int) -> None:
         for agent in agents:
             of_library = self.members.library(agent, word)
             if of_library:
-                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here")
+                raise LanguageError(f"'{word}' is {of_library}, and keeps its name here", line=self._line(at))
+            unknown = self.members.unknown_base(agent, word)
+            if unknown is not None:
+                line = self._line(self.model.agents[unknown[0]].start)
+                raise LanguageError(f"'{word}' cannot be renamed: what {unknown[0]} inherits in line {line} is not known", line=line)
+        self._check_read(word, at)
 
-    def _check_slot(self, slot: str) -> None:
+    def _check_read(self, word: str, at: int) -> None:
+        readers = readers_of(word)
+        reader = next((kind for kind in (self._library_classes if readers else ()) if issubclass(kind, readers)), None)
+        if reader is not None:
+            raise LanguageError(f"'{word}' is read by {reader.__name__}, and keeps its name here", line=self._line(at))
+
+    @cached_property
+    def _library_classes(self) -> list[type]:
+        """The classes of the library that the text has as parts or bases, and those it names that read attributes of its objects."""
+        agents = self.model.agents.values()
+        named = {part.kind: f"{one.name}.{part.name}" for one in agents for part in one.parts.values()}
+        named |= {base: base for one in agents for base in one.bases}
+        reading = {kind.__name__ for kind in READ}
+        named |= {path: path for one in self.model.names if one.text in reading for path in (".".join((*one.before, one.text)),)}
+        expressions = [expression for kind, expression in named.items() if kind not in self.model.agents]
+        found = (self._python.classes_of(self.explicit, self._path, expression) for expression in expressions)
+        return list(dict.fromkeys(kind for kinds in found for kind in kinds))
+
+    def _is_given(self, slot: str) -> bool:
+        """Returns whether the text itself gives a slot to chunks."""
+        named = any(one.text == slot for text in self.model.texts if text.kind == "chunk" for one in text.slots)
+        return named or any(one.text == slot and actr_answers.is_modified(one) for one in self.model.names)
+
+    def _check_slot(self, slot: str, at: int) -> None:
         for text in self.model.texts:
             if any(one.text == slot for one in text.slots):
                 word = actr_answers.giver(self.model, text, slot)
                 if word:
-                    raise LanguageError(f"'{slot}' is a slot of '{word}', and keeps its name here")
-        agents = self.model.agents.values()
-        kinds = {part.kind: f"{one.name}.{part.name}" for one in agents for part in one.parts.values()}
-        for kind, expression in (kinds | {base: base for one in agents for base in one.bases}).items():
-            if kind not in self.model.agents and slot in self._python.slots_given(self.explicit, self._path, expression):
-                raise LanguageError(f"'{slot}' is a slot of {kind}, and keeps its name here")
+                    raise LanguageError(f"'{slot}' is a slot of '{word}', and keeps its name here", line=self._line(at))
+        for kind in self._library_classes:
+            if slot in slots_given(kind):
+                raise LanguageError(f"'{slot}' is a slot of {kind.__name__}, and keeps its name here", line=self._line(at))
+            if gives_joints(kind) and (slot in joints() or not self._is_given(slot)):
+                raise LanguageError(
+                    f"'{slot}' may be a joint in the chunks of {kind.__name__}, and keeps its name here", line=self._line(at)
+                )
+        self._check_read(slot, at)
 
     def _defines(self, start: int) -> bool:
         return self._scopes.is_definition(self.explicit.place(start))

@@ -8,6 +8,8 @@ from typing import Any, cast
 
 from parso.grammar import load_grammar
 
+from actr3d.actr.lint.slot_names import GIVERS, READERS
+
 Scope = tuple[str, str, tuple[int, int]]
 """The kind of a scope, its name, and where it begins."""
 _COMPREHENSIONS = ("comp_for", "sync_comp_for")
@@ -56,6 +58,35 @@ class Scopes:
         """Returns whether a value is given to the name at a line and column."""
         leaf = self._leaves.get(place)
         return leaf is not None and bool(leaf.is_definition())
+
+    def is_made_by_call(self, place: tuple[int, int]) -> bool:
+        """Returns whether the value that is given to the name at a line and column is that of one call: `eyes = Eyes(visual)`."""
+        leaf = self._leaves.get(place)
+        definition = None if leaf is None else leaf.get_definition()
+        value = None if definition is None or definition.type != "expr_stmt" else definition.children[-1]
+        return (
+            value is not None
+            and value.type == "atom_expr"
+            and value.children[-1].type == "trailer"
+            and value.children[-1].children[0] == "("
+        )
+
+    def may_name_part(self, place: tuple[int, int]) -> bool:
+        """Returns whether the text at a line and column may name a part: `PMCompile(keep="goal")`; no value in a chunk, key or test."""
+        node = self._module.get_leaf_for_position(place)
+        while node is not None and node.type in ("string", "argument", "arglist", "atom", "testlist_comp"):
+            node = node.parent
+        if node is None or node.type in ("comparison", "dictorsetmaker", "subscriptlist"):
+            return False
+        if node.type != "trailer":
+            return True
+        return node.children[0] == "(" and node.get_previous_leaf().value not in (*GIVERS, *READERS, "modify")
+
+    def is_printed(self, place: tuple[int, int]) -> bool:
+        """Returns whether the text at a line and column is as such given to `print`."""
+        leaf = self._module.get_leaf_for_position(place)
+        given = None if leaf is None else leaf.parent if leaf.parent.type != "arglist" else leaf.parent.parent
+        return given is not None and given.type == "trailer" and given.get_previous_leaf().value == "print"
 
     def function_with_parameter(self, place: tuple[int, int]) -> str | None:
         """Returns the name of the function of which the plain name at a line and column is a parameter, empty for a `lambda`; else None."""

@@ -232,6 +232,8 @@ class Reply(Message, frozen=True, kw_only=True):
     error: str | None = None
     loses: bool = False
     """Whether it was refused only because something would be lost; see `Change.drop`."""
+    line: int | None = None
+    """The line of a text that was the reason to refuse a question about it."""
 
 
 class At(Message, frozen=True, kw_only=True):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
+from actr3d.actr.kernel.read_attributes import reads
 from actr3d.actr.kernel.tracing import traceable
 from actr3d.actr.kernel.tree import children_of, path_within
 from actr3d.errors import GridError, did_you_mean
@@ -87,6 +88,7 @@ class NotPlacedError(GridError, AttributeError):
     """A body is in no world yet; patterns that test its place do not match."""
 
 
+@reads("body", "x", "y")
 class Body(Model):
     """An agent's body in a grid world; `World.add` gives it its place.
 

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from importlib.machinery import ModuleSpec
 from threading import RLock
 from types import ModuleType
-from typing import Any
 
 ROOTS = ("python_actr", "ccm")
 """The old names of the library."""
@@ -87,13 +86,7 @@ class OldNames:
         part = _part(name)
         if part is None or part not in _PARTS:
             raise ModuleNotFoundError(f"No module named '{name}'", name=name)
-        names: dict[str, Any] = {}
-        for source in _PARTS[part]:
-            offered = importlib.import_module(source)
-            public: Sequence[str] = getattr(offered, "__all__", None) or [n for n in vars(offered) if n[0] != "_"]
-            names.update({name: getattr(offered, name) for name in public if name != "annotations"})
-        if part in ("actr", "lib.actr"):
-            names = {name: value for name, value in names.items() if name not in ROOT_ONLY}
+        names = {short: getattr(importlib.import_module(source), short) for short, source in _sources(part).items()}
         module = self.modules[name] = ModuleType(name)
         module.__spec__ = _spec(name, part)
         if part in PACKAGES:
@@ -105,7 +98,7 @@ class OldNames:
             if short not in names:
                 setattr(module, short, self.module(f"{name}.{short}"))
         if names:
-            module.__dict__["__all__"] = sorted({*names, *inner} - {"lib"} if part == "" else names)
+            module.__dict__["__all__"] = _exported(part)
         above, _, short = name.rpartition(".")
         if above in self.modules:
             setattr(self.modules[above], short, module)
@@ -150,6 +143,38 @@ def _inner_parts(part: str) -> list[str]:
     return [
         name.removeprefix(prefix) for name in _PARTS if name != part and name.startswith(prefix) and "." not in name.removeprefix(prefix)
     ]
+
+
+def _sources(part: str) -> dict[str, str]:
+    """Returns the names that a part contains, and the module of this library from which each comes."""
+    found: dict[str, str] = {}
+    for source in _PARTS[part]:
+        offered = importlib.import_module(source)
+        public: Sequence[str] = getattr(offered, "__all__", None) or [n for n in vars(offered) if n[0] != "_"]
+        found.update(dict.fromkeys(public, source))
+    hidden = {"annotations", *(ROOT_ONLY if part in ("actr", "lib.actr") else ())}
+    return {name: source for name, source in found.items() if name not in hidden}
+
+
+def _exported(part: str) -> list[str]:
+    """Returns the names that `from ... import *` imports from a part."""
+    return sorted({*_sources(part), *(_inner_parts(part) if part == "" else ())} - {"lib"})
+
+
+def text_of(name: str) -> str | None:
+    """Returns a Python text with the names of an old module, for tools that only read; None if the old library has no such module."""
+    part = _part(name)
+    if part is None or part not in _PARTS:
+        return None
+    names = _sources(part)
+    lines = [f"from {source} import {short}" for short, source in names.items()]
+    lines += [f"import {name}.{short} as {short}" for short in _inner_parts(part) if short not in names]
+    return "\n".join([*lines, f"__all__ = {_exported(part)}", ""])
+
+
+def is_package(name: str) -> bool:
+    """Returns whether an old module contains others."""
+    return _part(name) in PACKAGES
 
 
 def _part(fullname: str) -> str | None:

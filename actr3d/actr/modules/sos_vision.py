@@ -9,10 +9,12 @@ from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
+from actr3d.actr.kernel.read_attributes import reads
 from actr3d.actr.modules.registry import module
 
 
 @module
+@reads("salience", "value", "visible")
 class SOSVision(WithParameters, Model):
     """Searches for objects that match a pattern, and puts one of those that it notices into a buffer.
 

@@ -13,10 +13,12 @@ from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
+from actr3d.actr.kernel.read_attributes import reads
 from actr3d.actr.modules.registry import module
 
 
 @module
+@reads("visible", "x", "y")
 class Vision(WithParameters, Model):
     """Sees the objects of the environment that have `x` and `y`, unless their `visible` is False.
 
