@@ -164,6 +164,7 @@ def test_a_model_is_found_before_its_many_recordings(pages: Callable[..., Page])
     search(page, "counting.py")
     expect(options(page).filter(has_text="Recording: counting.py")).not_to_have_count(1)
     expect(options(page).first).to_contain_text("Model: counting.py")
+    page.unroute_all(behavior="wait")  # the page asks again, perhaps while it closes
 
 
 REFUSED_WITHOUT_REASON = """async () => {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import resource
+import time
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -244,7 +245,10 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(k
     clear = {"word": "clear_buffer", "named": {"buffer": f"{below}goal"}}
     with full_disk(talk):
         talk.say("until", time=0.2)
-        talk.wait(lambda: talk.state["status"] in ("paused", "failed") and talk.state["time"] > 0)
+        talk.until("paused", time=0.2)
+        time.sleep(0.5)  # what was run until then has been written, or cannot be
+        talk.say("until", time=0.3)
+        talk.until("paused", time=0.3)
         talk.say("seek", time=0.1)
         talk.until("paused", time=0.1)
         with pytest.raises(RefusedError, match=r"^what follows would not be recorded: "):

@@ -239,6 +239,8 @@ class ControlledRun(ABC):
             before: The recordings from which that one comes; see `ancestors`.
         """
         self.ancestors = [[recording, time], *before]
+        if self._recording is not None:
+            self._recording.spare = False
         self._record(branched=time, origin=recording, ancestors=before)
         self.flush()
 
@@ -259,10 +261,15 @@ class ControlledRun(ABC):
 
     def _close_recording(self, *, left: bool) -> None:
         """Closes the recording; `left` says that the user leaves the run, which may not be over."""
-        if self._recording is not None:
-            if left:
-                self._recording.leave()
-            self._recording.close()
+        recording = self._recording
+        if recording is None:
+            return
+        if recording.spare:
+            recording.stop()
+            return
+        if left:
+            recording.leave()
+        recording.close()
 
 
 def nothing_to_undo(time: int) -> SimulationError:

@@ -44,7 +44,10 @@ class KeptBranch:
         self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
         self._is_gone = self._repeated is not None and not self._repeated.is_file()
         lost = self._copy(recording) if self._ahead and (self._repeated is None or self._is_gone) else ""
-        failure = None if recording is None or not self._ahead else recording.failure
+        failure = None
+        if recording is not None and self._ahead:
+            recording.flush()  # only then is it known whether it can be written
+            failure = recording.failure
         if not drop and (lost or failure is not None):
             ahead = f"what lies ahead, from {time_text(self._at)} to {time_text(self._until)}, would be lost"
             later = "what follows would not be recorded"
