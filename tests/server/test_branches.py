@@ -185,10 +185,10 @@ def test_a_run_that_is_changed_on_a_full_disk_goes_on_unrecorded(kind: str, fail
     def behind(talk: Talk) -> list[Any]:
         talk.until("paused", time=0.1, furthest=0.1)
         reached: list[Any] = []
-        for time in (0.7, 0.05, 0.3, 0.1, 0.7, 1.5):
-            talk.say("until" if time > talk.state["time"] else "seek", time=time)
-            talk.until("paused", time=time)
-            reached.append([time, talk.state["parts"], talk.say("events", most=20_000)["events"]])
+        for moment in (0.7, 0.05, 0.3, 0.1, 0.7, 1.5):
+            talk.say("until" if moment > talk.state["time"] else "seek", time=moment)
+            talk.until("paused", time=moment)
+            reached.append([moment, talk.state["parts"], talk.say("events", most=20_000)["events"]])
         return reached
 
     def begun(name: str) -> Talk:

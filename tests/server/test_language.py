@@ -937,11 +937,11 @@ report(Base(), size=4)
         (OLD.replace("import ccm", "import c|cm"), "'ccm' is defined in ccm, and keeps its name here"),
         (OLD.replace("from ccm", "from c|cm"), "'ccm' .*keeps its name here"),
         (OLD.replace("def start", "def st|art"), "'start' is defined in .*, and keeps its name here"),
-        (OLD.replace("def key", "def k|ey"), "'key_pressed' is defined in .*, and keeps its name here"),
+        (OLD.replace("def key", "def k|ey"), "'key_pressed' is read by Motor, and keeps its name here"),
         (OLD.replace("busy:", "bu|sy:"), "'busy' is defined in .*, and keeps its name here"),
         (
             OLD.replace("import ccm", "import python_actr").replace("ccm", "python_actr").replace("def key", "def k|ey"),
-            "'key_pressed' is defined in .*, and keeps its name here",
+            "'key_pressed' is read by Motor, and keeps its name here",
         ),
         (
             OLD.replace("import ccm", "from python_actr import *")
@@ -950,7 +950,10 @@ report(Base(), size=4)
             .replace("def start", "def st|art"),
             "'start' is defined in .*, and keeps its name here",
         ),
-        (PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass"), "'key_pressed' is defined in .*, and keeps its name here"),
+        (
+            PUT.replace("turn = 'ada'", "def key_pre|ssed(self, key): pass").replace("    goal = ", "    motor = Motor()\n    goal = ", 1),
+            "'key_pressed' is read by Motor, and keeps its name here",
+        ),
         (DOORWAY.replace("view.as_array", "view.as_|array", 1), "where it is defined is not known"),
         (DOORWAY.replace("SIDEWAYS, speed", "SIDEWAYS, spe|ed"), "is defined in|where it is defined is not known"),
         (DOORWAY.replace('seen=None, eye="busy', 'seen=None, eye="bu|sy'), "'busy' is defined in .*, and keeps its name here"),

@@ -72,12 +72,6 @@ class Model(TreeNode):
     # Given by the modeller.
     profile: Any
     """The name of the profile for the agent, or for all agents of an environment."""
-    key_pressed: Any
-    """A method of an environment, called with each key that an agent in it presses."""
-    salience: Any
-    """How much a thing attracts `SOSVision`."""
-    visible: Any
-    """Whether `SOSVision` sees a thing."""
 
     def __init__(self, log: Any = None, **attrs: Any) -> None:
         self._init_log = log

@@ -8,10 +8,12 @@ from typing import Any
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
+from actr3d.actr.kernel.read_attributes import reads
 from actr3d.actr.modules.registry import module
 
 
 @module
+@reads("key_pressed")
 class Motor(WithParameters, Model):
     """Presses keys; the environment's `key_pressed(key)` is called when the finger comes down. One press at a time.
 
