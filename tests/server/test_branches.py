@@ -263,6 +263,48 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(k
     assert (facts["recorded"], facts["recording"], facts["branched"]["recording"]) == (path.stem, None, path.stem)
 
 
+@pytest.mark.parametrize("kind", MODELS)
+def test_a_recording_is_opened_and_looked_at_although_no_file_can_be_written(
+    kind: str, desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source, _, below = MODELS[kind]
+    path, first = reopened(desk, tmp_path, source)
+    desk.do(first.session.close())
+
+    def nowhere(model: str) -> Path:
+        return tmp_path / "nowhere" / f"{model}.sqlite"
+
+    monkeypatch.setattr(first.sessions.recordings, "new", nowhere)
+    talk = Talk(desk, desk.do(first.sessions.reopen(path.stem)), first.sessions)
+    talk.until("paused", furthest=0.3)
+    talk.say("until", time=0.3)
+    talk.until("paused", time=0.3)
+    assert talk.notices == []
+    clear = {"word": "clear_buffer", "named": {"buffer": f"{below}goal"}}
+    talk.say("seek", time=0.1)
+    talk.until("paused", time=0.1)
+    with pytest.raises(RefusedError, match=r"^what follows would not be recorded: "):
+        talk.say("command", **clear)
+    talk.say("command", **clear, drop=True)
+    talk.wait(lambda: talk.facts["recording"] is None)
+    assert re.fullmatch(r"What follows is not recorded: cannot write the recording .*", talk.facts["not_kept"])
+    talk.say("until", time=0.5)
+    talk.until("paused", time=0.5)
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_an_opened_recording_that_goes_on_beyond_its_end_is_not_kept_if_no_file_can_be_written(
+    kind: str, desk: Desk, tmp_path: Path
+) -> None:
+    path, talk = reopened(desk, tmp_path, MODELS[kind][0])
+    with full_disk(talk):
+        talk.say("until", time=0.5)
+        talk.until("paused", time=0.5)
+        talk.wait(lambda: talk.facts["recording"] is None)
+        assert re.fullmatch(r"What follows is not recorded: cannot write the recording .*", talk.facts["not_kept"])
+    assert talk.facts["branched"]["recording"] == path.stem
+
+
 def test_branches_of_one_run_are_not_without_number(tmp_path: Path) -> None:
     origin = tmp_path / "doorway-20260101-101010-abcd.sqlite"
     made = [retention.new_branch(origin, 0.01 * n) for n in range(retention.MAX_BRANCHES + 3)]

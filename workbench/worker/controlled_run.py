@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.explain.snapshot import snapshot_of
@@ -29,6 +29,8 @@ class ControlledRun(ABC):
     """A run that a controller controls."""
 
     _recording: Recording | None = None
+    _not_begun: RecordingError | None = None
+    """Why the recording could not be begun, which nobody needed until now; None if it could, or is given up."""
     _event_curves: EventCurves | None = None
     """The curves of the events that have been taken; None until they are needed."""
     _chunk_curves: ChunkCurves | None = None
@@ -250,13 +252,38 @@ class ControlledRun(ABC):
             if self._recording is not None:
                 self._recording.fact(name, value)
 
+    def _begin_recording(self, begin: Callable[[], Recording], *, spare: bool) -> None:
+        """Begins the recording.
+
+        Args:
+            begin: Begins it.
+            spare: Whether nobody needs it yet: then the run goes on although it cannot be begun.
+
+        Raises:
+            RecordingError: If it cannot be begun, and is needed.
+        """
+        try:
+            self._recording = begin()
+            self._recording.spare = spare
+        except RecordingError as error:
+            if not spare:
+                raise
+            self._not_begun = error
+
+    def recording_failure(self) -> RecordingError | None:
+        """Returns why what follows cannot be recorded; None if it can, or is not to be."""
+        if self._recording is None:
+            return self._not_begun
+        self._recording.flush()
+        return self._recording.failure
+
     def give_up_recording(self) -> RecordingError | None:
-        """Stops recording if the file can no longer be written; the run goes on without it. Returns why it cannot be written."""
-        recording = self._recording
-        if recording is None or recording.failure is None:
-            return None
-        failure, self._recording = recording.failure, None
-        recording.stop()
+        """Stops recording if the file cannot be written; the run goes on without it. Returns why it cannot be written."""
+        failure = self.recording_failure()
+        if failure is not None:
+            if self._recording is not None:
+                self._recording.stop()
+            self._recording = self._not_begun = None
         return failure
 
     def _close_recording(self, *, left: bool) -> None:

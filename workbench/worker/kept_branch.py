@@ -11,8 +11,7 @@ from actr3d.runner.facts import NAMED
 from workbench.retention import new_branch, superfluous_branches
 from workbench.time_text import time_text
 from workbench.worker.controlled_run import LossError
-from workbench.worker.error_report import notice_of
-from workbench.worker.messages import Branched, Unrecorded
+from workbench.worker.messages import Branched
 from workbench.worker.run_controller import RunController
 
 
@@ -44,10 +43,7 @@ class KeptBranch:
         self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
         self._is_gone = self._repeated is not None and not self._repeated.is_file()
         lost = self._copy(recording) if self._ahead and (self._repeated is None or self._is_gone) else ""
-        failure = None
-        if recording is not None and self._ahead:
-            recording.flush()  # only then is it known whether it can be written
-            failure = recording.failure
+        failure = controller.run.recording_failure() if self._ahead else None
         if not drop and (lost or failure is not None):
             ahead = f"what lies ahead, from {time_text(self._at)} to {time_text(self._until)}, would be lost"
             later = "what follows would not be recorded"
@@ -90,6 +86,7 @@ class KeptBranch:
             events: Number of events up to the change.
             what: What was done.
         """
+        is_unrecorded = self._ahead and self._drop and self._controller.give_up_recording()
         if self._repeated is not None:
             self._controller.leave_recording(self._at, self._until)
         elif self._branch is not None:
@@ -103,8 +100,6 @@ class KeptBranch:
         done = [f"{what} at {time_text(self._at, 2)}"]
         if self._ahead and not is_kept:
             done.append("the rest was lost")
-        if self._ahead and self._drop and (failure := self._controller.run.give_up_recording()) is not None:
-            self._controller.channel.post(notice_of(failure))
-            self._controller.channel.post(Unrecorded())
+        if is_unrecorded:
             done.append("what follows is not recorded")
         self._controller.goes_another_way(events, "; ".join(done), ahead=self._ahead)

@@ -221,8 +221,8 @@ class ProgramRun(ControlledRun):
         try:
             if start.record is not None:
                 facts = program_facts(start.path, self._source, self._seed, None)
-                self._recording = Recording(start.record, {**facts, NAMED: Path(start.record).stem})
-                self._recording.spare = start.recorded is not None
+                record = partial(Recording, start.record, {**facts, NAMED: Path(start.record).stem})
+                self._begin_recording(record, spare=start.recorded is not None)
             while not controller.leaving:
                 self._run_once()
                 with suppress(_Again):

@@ -22,9 +22,9 @@ from actr3d.trace import Trace
 from actr3d.values import plain_to_json, to_json
 from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun, LossError
-from workbench.worker.error_report import describe_error
+from workbench.worker.error_report import describe_error, notice_of
 from workbench.worker.known_run import KnownRun, difference_notice
-from workbench.worker.messages import ENDED, Branched, Cut, Do, Draw, Leave, Reply, State, Status, shortened
+from workbench.worker.messages import ENDED, Branched, Cut, Do, Draw, Leave, Reply, State, Status, Unrecorded, shortened
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
@@ -255,9 +255,18 @@ class RunController:
         self._known_run = None
         recording = Path(self.channel.start.recorded or "").stem
         before = [[facts["origin"], facts["branched"]], *facts.get("ancestors", ())] if facts.get("origin") else []
+        self.give_up_recording()
         # First, as pages list recordings again when they hear of the branch.
         self.run.become_branch(facts.get(NAMED, recording), at, before)
         self.channel.post(Branched(recording=recording, at=at, until=until))
+
+    def give_up_recording(self) -> bool:
+        """Goes on without a recording if it cannot be written, and says so. Returns whether that is so."""
+        failure = self.run.give_up_recording()
+        if failure is not None:
+            self.channel.post(notice_of(failure))
+            self.channel.post(Unrecorded())
+        return failure is not None
 
     # -- commands from users
 
