@@ -31,8 +31,8 @@ export const restarted = signal(false);
 export const running = computed(() => state.value?.status === "running");
 /** Whether the run goes as fast as possible: then drawing must not take too much of the processor. */
 export const hurried = computed(() => running.value && state.value.wanted === null);
-/** The recording that has the shown run: the one that it writes, or else the one that it repeats; null for none. */
-export const shownRecording = computed(() => session.value?.recording ?? session.value?.recorded ?? null);
+/** The recording that has the shown run: the one that it writes, or else the one that it repeats as long as it does; null for none. */
+export const shownRecording = computed(() => session.value?.recording ?? (session.value?.branched ? null : session.value?.recorded) ?? null);
 /** Whether other pages show the run, too. */
 export const isShared = computed(() => (session.value?.watching ?? []).some((name) => name !== me.value));
 /** The run of the newest state: until a new run sends its first state, the page shows that of the previous run. */

@@ -18,7 +18,7 @@ export async function change(what) {
   } catch (error) {
     if (!error.loses) throw error;
     const text = `${error.message[0].toUpperCase()}${error.message.slice(1)}.`;
-    if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
+    if (!(await confirmed("Change the past?", text, "Change it anyway"))) return false;
     await say({ ...what, drop: true });
   }
   return true;

@@ -39,10 +39,17 @@ function Others({ id, model }) {
   </button>`;
 }
 
+/** What becomes of the run that is shown: a text, and its explanation. */
+function fate({ recording, branched }) {
+  if (recording !== null) return ["Recorded as a branch", "It differs from the recording that was opened, or goes beyond it; this is recorded as a branch."];
+  if (branched) return ["No longer recorded", "It differs from the recording that was opened, or goes beyond it; this is not recorded."];
+  return [`${timeText(state.value?.furthest ?? 0)} recorded`, "Running it shows again what happened."];
+}
+
 export function RecordingBanner() {
-  const { id, recorded = null, recording, made, model } = session.value ?? {};
+  const { id, recorded = null, made, model } = session.value ?? {};
   if (recorded === null) return null;
-  const branched = recording !== null;
+  const [text, why] = fate(session.value);
   const run = runs.value?.find(({ id }) => id === recorded);
   const name = run && (ownName(run) || branchText(run));
   const when = made === null ? "deleted or renamed since it was opened" : `made ${whenInFull(made)}`;
@@ -53,9 +60,7 @@ export function RecordingBanner() {
       <div class="facts quiet">
         <span class="path" title=${model}><bdi>${model}</bdi></span>
         <span class="when" title=${when}>${when}</span>
-        <span title=${branched ? "It differs from the recording that was opened, or goes beyond it; this is recorded as a branch." : "Running it shows again what happened."}>
-          ${branched ? "Recorded as a branch" : `${timeText(state.value?.furthest ?? 0)} recorded`}
-        </span>
+        <span title=${why}>${text}</span>
       </div>
     </div>
     <${Others} id=${id} model=${model} />

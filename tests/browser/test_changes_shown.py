@@ -361,7 +361,7 @@ def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lo
     expect(x).to_be_focused()
     expect(form.get_by_role("alert")).to_have_count(0)
     x.press("Enter")
-    question.get_by_role("button", name="Change it, and lose the rest").click()
+    question.get_by_role("button", name="Change it anyway").click()
     expect(form.get_by_role("alert")).to_contain_text("it would be inside 'aperture_left'")
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)
@@ -385,7 +385,7 @@ def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lo
     expect(form.get_by_role("alert")).to_contain_text("must be a number (got 'fast')")  # what cannot be done loses nothing
     value.fill("1.5")
     value.press("Enter")
-    question.get_by_role("button", name="Change it, and lose the rest").click()
+    question.get_by_role("button", name="Change it anyway").click()
     expect(page.get_by_role("dialog")).to_have_count(0)
     until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+import resource
 import shutil
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -194,7 +196,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     expect(asked).to_have_count(0)
     expect(page.locator("#width")).to_have_text(width)
     drag("Home")
-    asked.get_by_role("button", name="Change it, and lose the rest").click()
+    asked.get_by_role("button", name="Change it anyway").click()
     shows(page, "#status", r"paused: changed at 1\.50 s; the rest was lost")
     expect(page.locator("#width")).not_to_have_text(width)
     for key in ("ArrowRight", "End", "ArrowLeft"):
@@ -220,10 +222,44 @@ def test_before_what_cannot_be_kept_is_lost_it_is_asked_also_if_the_run_is_recor
         page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
         asked = page.get_by_role("dialog", name="Change the past?")
         expect(asked).to_contain_text("What lies ahead, from 0.1 s to 0.2 s, would be lost: it cannot be kept (unable to open")
-        asked.get_by_role("button", name="Change it, and lose the rest").click()
+        asked.get_by_role("button", name="Change it anyway").click()
         shows(page, "#status", r"changed at 0\.10 s; the rest was lost")
     finally:
         aside.rename(where)
+
+
+def workers(process: int) -> list[int]:
+    """Returns the processes that another one has started, and those that these have started."""
+    children = [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text(encoding="ascii").split()]
+    return [one for child in children for one in (child, *workers(child))]
+
+
+def test_an_opened_recording_that_is_changed_on_a_full_disk_is_no_longer_said_to_be_recorded(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "counting.py")
+    page = pages(refusals=True)
+    page.goto(f"{workbench.url}/?run={name}")
+    banner, link = page.locator(".recording-banner"), page.get_by_role("button", name="Copy a link")
+    expect(banner).to_contain_text("3.35 s recorded")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    for worker in workers(workbench.process.pid):
+        resource.prlimit(worker, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow
+    try:
+        say(page, type="until", time=0.3)
+        shows(page, "#time", r"t = 0\.30 s")
+        at(page, 0.1)
+        change = {"type": "command", "word": "clear_buffer", "named": {"buffer": "goal"}}
+        page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
+        asked = page.get_by_role("dialog", name="Change the past?")
+        expect(asked).to_contain_text("What follows would not be recorded: ")
+        asked.get_by_role("button", name="Change it anyway").click()
+        shows(page, "#status", r"changed at 0\.10 s; what follows is not recorded")
+    finally:
+        for worker in workers(workbench.process.pid):
+            resource.prlimit(worker, resource.RLIMIT_FSIZE, limits)
+    for _ in range(2):
+        expect(banner).to_contain_text("No longer recorded")
+        expect(link).to_be_disabled()
+        page.reload()
 
 
 def at(page: Page, time: float) -> None:
@@ -289,7 +325,7 @@ def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that
     shows(page, "#status", "at its start")
     page.goto(f"{workbench.url}/?run={name}")
     banner = page.locator(".recording-banner")
-    expect(banner).to_contain_text("0.30 s recorded")
+    expect(banner).to_contain_text("3.35 s recorded")
     say(page, type="until", time=0.5)
     expect(banner).to_contain_text("Recorded as a branch")
     shows(page, "#time", r"t = 0\.50 s")
@@ -374,13 +410,13 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     first = page.locator(".branch-name", has_text="at 0.10 s")
     first.click()
     banner, time = page.locator(".recording-banner"), page.locator("#time")
-    expect(banner).to_contain_text("0.30 s recorded")
+    expect(banner).to_contain_text("3.35 s recorded")
     name = page.url.partition("run=")[2]
     branch = changed_at(page, 0.2, name)
     other.goto(page.url)
     expect(other.locator(".recording-banner")).to_contain_text("Recorded as a branch")
     first.click()
-    expect(banner).to_contain_text("0.30 s recorded")
+    expect(banner).to_contain_text("3.35 s recorded")
     expect(page).to_have_url(f"{workbench.url}/?run={name}")
     expect(time).to_contain_text("t = 0.20 s")  # from where it differs
     at(page, 0.25)
@@ -391,7 +427,7 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     expect(page).to_have_url(f"{workbench.url}/?run={branch}")
     row(page, name).click()
     page.get_by_role("button", name="Open", exact=True).click()
-    expect(banner).to_contain_text("0.30 s recorded")
+    expect(banner).to_contain_text("3.35 s recorded")
     row(page, branch).click()
     page.get_by_role("button", name="Open", exact=True).click()
     expect(banner).to_contain_text("Recorded as a branch")

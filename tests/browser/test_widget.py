@@ -185,7 +185,7 @@ def test_a_recording_in_a_notebook_says_that_it_was_changed_and_asks_before_more
     change(0.05)
     asked = frame.get_by_role("dialog", name="Change the past?")
     expect(asked).to_contain_text("What lies ahead, from 0.05 s to 0.11 s, would be lost: the run is not recorded.")
-    asked.get_by_role("button", name="Change it, and lose the rest").click()
+    asked.get_by_role("button", name="Change it anyway").click()
     expect(frame.locator("#status")).to_have_text("paused: changed at 0.05 s; the rest was lost")
 
 
