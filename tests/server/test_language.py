@@ -532,6 +532,24 @@ def test_a_method_is_renamed_with_those_of_its_subclasses_that_replace_it(ask: A
     assert (count, after.count("def look"), after.replace("|", "").count("def see")) == (2, 0, 2)
 
 
+REMAINING = """class Pole:
+    # a Pole, and a pole
+    pole = 1
+
+POLE = "look at feature:pole"
+Pole()
+"""
+
+
+def test_renaming_says_in_which_lines_the_word_stays(ask: Asked) -> None:
+    assert ask("rename", REMAINING.replace("class Pole", "class Po|le"), "Rod")["unchanged"] == [2, 3, 5]
+    assert ask("rename", REMAINING.replace("class Pole", "class Po|le"), "POLE_")["unchanged"] == [2, 3, 5]
+    assert ask("rename", "class Big|Pole: pass\n\nbig_pole = BigPole(), 'big pole'\n", "Rod")["unchanged"] == [3]
+    scopes = "def one(size): return size\ndef two(size): return size  # size\n"
+    assert ask("rename", scopes.replace("size", "si|ze", 1), "width")["unchanged"] == [2]
+    assert ask("rename", scopes.replace("one", "o|ne", 1), "single")["unchanged"] == []
+
+
 WHOLE = """from actr3d.actr import *
 
 class Eyes(Model):
