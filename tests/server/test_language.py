@@ -757,6 +757,20 @@ def other(number):
     size = {number: number for number in [number] if number}
     return (number := number + 1)
 """
+FETCHED = """from actr3d.actr import *
+
+class Garden(Model):
+    apple = Model(owner="none")
+
+class Eater(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("eat apple")
+    def eat(goal="eat ?what"):
+        self.take(what)
+    def take(self, what):
+        getattr(self.parent, what).owner = self
+"""
 PARTLY = """from actr3d.actr import *
 from actr3d.vision import Feature, Vision, detector
 from operator import attrgetter
@@ -896,6 +910,7 @@ report(Base(), size=4)
 @pytest.mark.parametrize(
     ("text", "why"),
     [
+        (FETCHED.replace("apple =", "app|le ="), "whether 'apple' in line 9 is the same is not known"),
         (PARTLY.replace("log()", "lo|g()"), "is defined in actr3d.actr.kernel.log, and keeps its name here"),
         (PARTLY.replace("seconds=1", "sec|onds=1"), "whether 'seconds' in line 25 is the same is not known"),
         (PARTLY.replace("task:?word", "task:?wo|rd"), r"whether '\?word' in line 5 is the same is not known"),

@@ -133,7 +133,8 @@ class SameWords:
         seen = any(self._is_seen_as_chunk(kind) for kind in target.meaning.owners) if target.meaning.what == "member" else False
         if seen:
             strings |= self._in_strings(_SLOT, word)
-        if seen or target.meaning.what == "slot" or self._may_be_in_strings(word, target):
+        computed = self._may_be_in_strings(word, target)
+        if seen or target.meaning.what == "slot" or computed:
             strings |= self._as_values(word)
         elif target.meaning.what == "member":
             values = {at for at in self._as_values(word) if self._scopes.may_name_member(self.explicit.place(at))}
@@ -143,7 +144,8 @@ class SameWords:
         if self._is_feature(word, target.meaning):  # which requests and patterns name in lower case: feature:pole
             named = re.finditer(rf"""\b(?:feature:|feature\s*=\s*["']|DETECTORS\[["']){re.escape(word.lower())}\b""", self.model.text)
             strings |= {one.end() - len(word) for one in named}
-        if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
+        fetched = computed and self._is_part(word, target.meaning)  # getattr(self.parent, what)
+        if fetched or self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._as_values(word)}
         return same, unproven | (strings - same)
