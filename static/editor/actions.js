@@ -44,10 +44,12 @@ export async function rename(document) {
     name = await asked(title, "New name", name, "Rename", { problem });
     if (!name || name === found.name) return focusText();
     try {
-      const { changes } = await askAbout(state, "rename", state.selection.main.head, name);
+      const { changes, unchanged } = await askAbout(state, "rename", state.selection.main.head, name);
       if (document.state.doc !== state.doc) return complain("Nothing was renamed: the text has changed meanwhile.");
       document.change({ changes: changes.map(([from, to]) => ({ from, to, insert: name })), userEvent: "input.rename" });
-      say(document, `renamed in ${counted(changes.length, "place")}`);
+      const starts = unchanged.map((line) => document.state.doc.line(line).from);
+      document.unchanged.value = starts.length > 0 ? { word: found.name, places: changes.length, starts } : null;
+      if (starts.length === 0) say(document, `renamed in ${counted(changes.length, "place")}`);
       return focusText();
     } catch (error) {
       problem = error.message;

@@ -50,6 +50,8 @@ class Document {
     this.marks = signal([]);
     /** The latest action, in a few words; empty once the text has changed after it. */
     this.note = signal("");
+    /** Where a word stays after it was renamed elsewhere: {word, places, starts}, with the starts of these lines; null for nowhere. */
+    this.unchanged = signal(null);
     if (base !== null && text !== base) this.change(minimal(this.state, text));
   }
 
@@ -60,6 +62,7 @@ class Document {
     if (transactions.some(({ docChanged }) => docChanged)) {
       for (const { changes } of transactions) this.since = this.since.compose(changes);
       this.note.value = "";
+      if (this.unchanged.value) this.unchanged.value = transactions.reduce(moved, this.unchanged.value);
       this.settle();
       keepSoon(this);
       watching.changed(this);
@@ -88,6 +91,12 @@ class Document {
   get text() {
     return this.state.doc.toString();
   }
+}
+
+/** Returns where a word stays unchanged, after a transaction: nowhere once the renaming may be undone. */
+function moved(unchanged, transaction) {
+  if (!unchanged || transaction.isUserEvent("undo")) return null;
+  return { ...unchanged, starts: unchanged.starts.map((at) => transaction.changes.mapPos(at, 1)) };
 }
 
 /** Returns the change from a state to another text, without the equal parts at both ends. */

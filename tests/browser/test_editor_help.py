@@ -185,6 +185,34 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     expect(page.locator(".cm-activeLine")).to_have_text(re.compile("^from actr3d.vision import"))
 
 
+STAYS = "def one(size):\n    return size\n\n" + "".join(f"def other_{number}(size):\n    return 1\n\n" for number in range(10))
+
+
+def test_after_renaming_the_page_leads_to_the_lines_in_which_the_word_stays(opened: Callable[[str], Page]) -> None:
+    page = opened(STAYS)
+    at_end_of(page, "return size")
+    page.keyboard.press("F2")
+    page.get_by_role("dialog").get_by_role("textbox").fill("width")
+    page.keyboard.press("Enter")
+    note = page.locator(".strip", has_text="stays")
+    expect(note).to_have_text(re.compile(r"Renamed in 2 places\. The word size stays in lines 4, 7, 10, 13, 16, 19, 22, 25 and 2 more\."))
+    assert page.evaluate(LOOK) == []
+    page.keyboard.press("Control+Home")
+    page.keyboard.type("# new\n")
+    note.get_by_role("button", name="line 8").focus()
+    page.keyboard.press("Enter")
+    expect(page.locator(".cm-activeLine")).to_have_text(re.compile("def other_1"))
+    expect(page.locator(CODE)).to_be_focused()
+    note.get_by_role("button", name="Close").click()
+    expect(note).to_have_count(0)
+    at_end_of(page, "return width")
+    page.keyboard.press("F2")
+    page.get_by_role("dialog").get_by_role("textbox").fill("breadth")
+    page.keyboard.press("Enter")
+    expect(page.locator(".file-status .state")).to_contain_text("renamed in 2 places")
+    expect(note).to_have_count(0)
+
+
 SEEN = "from actr3d.actr import *\n\nclass Spot(Model):\n    x = 1\n\nclass Person(ACTR):\n    vision = Vision(Buffer(), Buffer())\n"
 
 

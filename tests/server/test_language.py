@@ -532,6 +532,24 @@ def test_a_method_is_renamed_with_those_of_its_subclasses_that_replace_it(ask: A
     assert (count, after.count("def look"), after.replace("|", "").count("def see")) == (2, 0, 2)
 
 
+REMAINING = """class Pole:
+    # a Pole, and a pole
+    pole = 1
+
+POLE = "look at feature:pole"
+Pole()
+"""
+
+
+def test_renaming_says_in_which_lines_the_word_stays(ask: Asked) -> None:
+    assert ask("rename", REMAINING.replace("class Pole", "class Po|le"), "Rod")["unchanged"] == [2, 3, 5]
+    assert ask("rename", REMAINING.replace("class Pole", "class Po|le"), "POLE_")["unchanged"] == [2, 3, 5]
+    assert ask("rename", "class Big|Pole: pass\n\nbig_pole = BigPole(), 'big pole'\n", "Rod")["unchanged"] == [3]
+    scopes = "def one(size): return size\ndef two(size): return size  # size\n"
+    assert ask("rename", scopes.replace("size", "si|ze", 1), "width")["unchanged"] == [2]
+    assert ask("rename", scopes.replace("one", "o|ne", 1), "single")["unchanged"] == []
+
+
 WHOLE = """from actr3d.actr import *
 
 class Eyes(Model):
@@ -739,11 +757,66 @@ def other(number):
     size = {number: number for number in [number] if number}
     return (number := number + 1)
 """
+FETCHED = """from actr3d.actr import *
+
+class Garden(Model):
+    apple = Model(owner="none")
+
+class Eater(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("eat apple")
+    def eat(goal="eat ?what"):
+        self.take(what)
+    def take(self, what):
+        getattr(self.parent, what).owner = self
+"""
+PARTLY = """from actr3d.actr import *
+from actr3d.vision import Feature, Vision, detector
+from operator import attrgetter
+log = log()
+CUE = "fact ?word ?"
+
+class Pole(Feature):
+    width: float
+
+@detector(Pole)
+def poles(view, *, most=0.1):
+    return [thing for thing in view if thing.width < most]
+
+class Kitchen(Model):
+    def boil(self, seconds=1):
+        yield seconds
+
+class Cook(ACTR):
+    goal = Buffer()
+    visual = Buffer()
+    vision = Vision(visual)
+    served = 0
+    def begin(goal="task:?word"):
+        vision.request(CUE)
+        self.parent.boil(seconds=0.4)
+        self.__class__.served += 1
+    def look(goal="task:look ink:?word"):
+        vision.request("feature:pole", most=0.3)
+        goal.modify(_1=log)
+
+class Trial:
+    ink = 1
+    price = 2
+
+row = {}
+print(row["ink"], attrgetter("price")(Trial))
+"""
 
 
 @pytest.mark.parametrize(
     ("text", "name", "lines"),
     [
+        ("from actr3d.actr import *\nlo|g = (\n    log()\n)\nprint(log)\n", "trace", [2, 5]),
+        ("from actr3d.actr import *\nfor turn in (1, 2):\n    turn > 1 and print(old)\n    o|ld = turn\n", "last", [3, 4]),
+        (PARTLY.replace("served = 0", "ser|ved = 0"), "sold", [22, 26]),
+        (PARTLY.replace("ink:?word", "ink:?wo|rd"), "seen", [27]),
         (FAN.replace("    answer = reaction", "    ans|wer = reaction"), "reply", [110, 123, 163, 164]),
         (FAN.replace("self.parent.answer", "self.parent.ans|wer"), "reply", [110, 123, 163, 164]),
         (FAN.replace("answer = reaction", "answer = reac|tion"), "delay", [110, 123, 162]),
@@ -780,7 +853,7 @@ def other(number):
         (CALLED.replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         (f"{CALLED}class Other(ACTR): pass\nOther(pace=1)\n".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
         (f"{CALLED}walk(**{{'pace': 2}})".replace("other(pace", "other(pa|ce"), "zzz", [4, 5]),
-        (f"{CALLED}class Other: pass\nsetattr(Other(), 'quick' or name, 1)\n".replace("quick =", "qui|ck ="), "zzz", [9]),
+        (f"{CALLED}class Other: pass\nsetattr(Other(), 'quick slow' or name, 1)\n".replace("quick =", "qui|ck ="), "zzz", [9]),
         (PUT.replace("self='mood", "self='mo|od"), "feeling", [8, 9]),
         (PUT.replace("mood = ", "mo|od = "), "feeling", [8, 9]),
         (PUT.replace("goal.set('task", "goal.set('ta|sk"), "job", [9, 10]),
@@ -837,6 +910,16 @@ report(Base(), size=4)
 @pytest.mark.parametrize(
     ("text", "why"),
     [
+        (FETCHED.replace("apple =", "app|le ="), "whether 'apple' in line 9 is the same is not known"),
+        (PARTLY.replace("log()", "lo|g()"), "is defined in actr3d.actr.kernel.log, and keeps its name here"),
+        (PARTLY.replace("seconds=1", "sec|onds=1"), "whether 'seconds' in line 25 is the same is not known"),
+        (PARTLY.replace("task:?word", "task:?wo|rd"), r"whether '\?word' in line 5 is the same is not known"),
+        (PARTLY.replace("_1", "_|1"), "'_1' is the position of a value without a slot, and keeps its name"),
+        (PARTLY.replace("class Pole", "class Po|le"), "whether 'feature:pole' in line 28 is the same is not known"),
+        (PARTLY.replace("most=0.1", "mo|st=0.1"), "whether 'most' in line 28 is the same is not known"),
+        (PARTLY.replace("ink:?", "i|nk:?"), "whether 'ink' in line 36 is the same is not known"),
+        (PARTLY.replace("ink = 1", "i|nk = 1"), "whether 'ink' in line 36 is the same is not known"),
+        (PARTLY.replace("price = 2", "pr|ice = 2"), "whether 'price' in line 36 is the same is not known"),
         (REPORTED.replace("thing.total", "thing.to|tal"), "'total' cannot be renamed: where it is defined is not known"),
         (REPORTED.replace("self.total", "self.to|tal"), "whether 'total' in line 10 is the same is not known"),
         (FAN.replace("random.choice", "random.cho|ice"), "is defined in|where it is defined is not known"),

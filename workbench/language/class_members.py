@@ -121,9 +121,10 @@ class ClassMembers:
 
     def kinds(self, name: Name) -> set[str] | None:
         """Returns the classes of what stands before a name, those of other texts as `module:name`; None if they are not known."""
-        if name.before == ("self",) and name.agent:
+        if name.before in (("self",), ("self", "__class__")) and name.agent:
             return {name.agent}
-        return self._python.kinds(self._explicit, self._path, name.start - 1)
+        kinds = self._python.kinds(self._explicit, self._path, name.start - 1)
+        return None if kinds and "typing:Self" in kinds else kinds
 
     def _own(self, agent: str, member: str) -> Iterator[int]:
         """Yields where a class itself defines a name, and where its methods use it as an attribute of `self`."""

@@ -76,7 +76,8 @@ class Assistant:
         renaming = self._rename(model, question.path, at, question.name)
         size = len(renaming.name.encode("utf-16-le")) // 2
         starts = [units.unit(start) for start in renaming.starts]
-        return {"name": renaming.name, "what": renaming.what, "changes": [[start, start + size] for start in starts]}
+        changes = [[start, start + size] for start in starts]
+        return {"name": renaming.name, "what": renaming.what, "changes": changes, "unchanged": _unchanged(question.text, renaming)}
 
     def _complete(self, model: ModelText, path: str, at: int) -> Completion:
         attributes = self._python.after(model.text, path)
@@ -199,6 +200,14 @@ def _renamed(text: str, found: Renaming, new: str) -> tuple[str, list[int]]:
         length += len(new)
         end = start + len(found.name)
     return "".join([*pieces, text[end:]]), starts
+
+
+def _unchanged(text: str, found: Renaming) -> list[int]:
+    """Returns the lines in which a name stays as a word of any meaning, also in lower case, or as `big_pole` for `BigPole`."""
+    forms = {found.name, re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", found.name)}
+    words = re.finditer(rf"\b(?:{'|'.join(map(re.escape, sorted(forms)))})\b", text, re.IGNORECASE)
+    starts = set(found.starts)
+    return sorted({text.count("\n", 0, one.start()) + 1 for one in words if one.start() not in starts})
 
 
 def _plain(answer: Completion | Definition | Documentation | Hover | None, units: CodeUnits) -> Any:

@@ -30,6 +30,7 @@ _NAMES = re.compile(r"[\s,;|/]*\w[\w.]*(?:[\s,;|/]+\w[\w.]*)*[\s,;|/]*")
 _QUOTES = ("'", '"')
 _PLANNING_UNITS = {"actr3d.sgoms.units:Ordered", "actr3d.sgoms.units:Situated"}
 _MODEL = "actr3d.actr.kernel.model:Model"
+_FEATURE = "actr3d.vision.feature:Feature"
 _BUFFER = "actr3d.actr.kernel.buffer:Buffer"
 
 
@@ -132,13 +133,19 @@ class SameWords:
         seen = any(self._is_seen_as_chunk(kind) for kind in target.meaning.owners) if target.meaning.what == "member" else False
         if seen:
             strings |= self._in_strings(_SLOT, word)
-        if seen or target.meaning.what == "slot" or self._may_be_in_strings(word, target):
+        computed = self._may_be_in_strings(word, target)
+        if seen or target.meaning.what == "slot" or computed:
             strings |= self._as_values(word)
-        elif self._is_part(word, target.meaning):
-            strings |= {at for at in self._as_values(word) if self._scopes.may_name_part(self.explicit.place(at))}
+        elif target.meaning.what == "member":
+            values = {at for at in self._as_values(word) if self._scopes.may_name_member(self.explicit.place(at))}
+            strings |= values if self._is_part(word, target.meaning) else {at for at in values if self._is_alone(at, word)}
         if target.meaning.what == "variable":
-            strings = {at for at in strings if self._method_at(at) in target.meaning.owners}
-        if self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
+            strings = {at for at in strings if self._may_be_used(at, target.meaning)}
+        if self._is_feature(word, target.meaning):  # which requests and patterns name in lower case: feature:pole
+            named = re.finditer(rf"""\b(?:feature:|feature\s*=\s*["']|DETECTORS\[["']){re.escape(word.lower())}\b""", self.model.text)
+            strings |= {one.end() - len(word) for one in named}
+        fetched = computed and self._is_part(word, target.meaning)  # getattr(self.parent, what)
+        if fetched or self._is_planning_unit(word, target.meaning):  # SGOMS names these by values: planning_unit:squeeze
             values = (piece.start for text in self.model.texts for piece in text.pieces if piece.text == word and not piece.is_variable)
             strings |= {*values, *self._as_values(word)}
         return same, unproven | (strings - same)
@@ -169,15 +176,29 @@ class SameWords:
     def _is_planning_unit(self, word: str, meaning: Meaning) -> bool:
         return any(_PLANNING_UNITS & (self._of_part(part)[1] or _PLANNING_UNITS) for part in self._parts(word, meaning))
 
+    def _is_feature(self, word: str, meaning: Meaning) -> bool:
+        """Returns whether a name is that of a class of things that vision finds."""
+        if meaning.what != "local" or word not in self.model.agents:
+            return False
+        bases = {base.rpartition(".")[2] for one in self.model.lineage(word) for base in one.bases}
+        return "Feature" in bases or _FEATURE in (self.members.above(word) or ())
+
     def _parts(self, word: str, meaning: Meaning) -> Iterator[Part]:
         """Yields the parts that a member means."""
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
         agents = [self.model.agents[one] for agent in own for one in sorted(self.members.family(agent, word))]
         yield from (agent.parts[word] for agent in agents if word in agent.parts)
 
-    def _method_at(self, at: int) -> str:
-        """Returns the method around a position."""
-        return next((name.method for name in reversed(self.model.names) if name.start < at), "")
+    def _is_alone(self, at: int, word: str) -> bool:
+        """Returns whether the word at a position is all that its string holds."""
+        return (at, at + len(word)) in self.model.other_texts
+
+    def _may_be_used(self, at: int, variable: Meaning) -> bool:
+        """Returns whether a production of a variable has the text at a position, itself or by the name of a constant."""
+        before = next((name for name in reversed(self.model.names) if name.start < at), None)
+        if before is None or before.method:
+            return before is not None and before.method in variable.owners
+        return any(one.text == before.text and one.method in variable.owners for one in self.model.names)
 
     def _in_strings(self, pattern: str, word: str) -> set[int]:
         """Returns where a word stands in strings that are no known texts of chunks or patterns, in the way that a pattern describes."""
@@ -224,10 +245,11 @@ class SameWords:
             for piece in self._variables(text):
                 if piece.text == word:
                     yield WordPlace(start=piece.start, name=None, meaning=Meaning(what="variable", owners=frozenset({text.method})))
-        for found in re.finditer(rf"(\w+)\[[\"']({re.escape(word)})[\"']\]", self.model.text):
+        for found in re.finditer(rf"(\w+|[\])])\[[\"']({re.escape(word)})[\"']\]", self.model.text):
             is_class = found[1] in self.model.agents  # of an Enum
-            meaning = Meaning(what="member", owners=frozenset({found[1]})) if is_class else Meaning(what="slot")
-            yield WordPlace(start=found.start(2), name=None, meaning=meaning)
+            is_chunk = found[1] == "chunk" or any(found[1] in one.parts for one in self.model.agents.values())
+            known = Meaning(what="member", owners=frozenset({found[1]})) if is_class else Meaning(what="slot") if is_chunk else None
+            yield WordPlace(start=found.start(2), name=None, meaning=known)  # other things with keys are not known to be chunks
         for name in self.model.names:
             if name.text == word:
                 yield WordPlace(start=name.start, name=name, meaning=self._of_name(name))
@@ -342,7 +364,8 @@ class SameWords:
             return None if replaced or None in found or len(meanings) > 1 else meanings.pop()
         before = [one for one in self.model.names if one.end <= name.start and (*one.before, one.text) == name.called]
         kinds = self.members.kinds(before[-1]) if before and before[-1].before else None
-        is_method = bool(kinds) and all(":" in kind and not kind.endswith(":") for kind in kinds or ())
+        known = bool(kinds) and all(":" in kind and not kind.endswith(":") for kind in kinds or ())
+        is_method = known and all(self.members.may_have(kind, name.called[-1]) for kind in kinds or ())  # not one of `self.parent`
         return _LIBRARY if is_method else None  # a method of an object of the library knows no names of the text
 
     def _is_replaced(self, parameter: Name) -> bool:
@@ -372,6 +395,8 @@ class SameWords:
         asked = other.name is not None and other.name.keyword and other.name.called[-1:] and other.name.called[-1] in (*GIVERS, *READERS)
         if one.what == "slot" and asked and two.what != "slot":
             return None
+        if (asked or two.what == "slot") and self._scopes.is_parameter_of_decorated(self.explicit.place(target.start)):
+            return None  # requests name the parameters of detectors
         if {one.what, two.what} == {"slot", "member"}:
             return None if any(self._is_seen_as_chunk(kind) for kind in one.owners | two.owners) else False
         if one.what != two.what:
@@ -470,6 +495,8 @@ class SameWords:
         return named or any(one.text == slot and actr_answers.is_modified(one) for one in self.model.names)
 
     def _check_slot(self, slot: str, at: int) -> None:
+        if re.fullmatch(r"_?\d+", slot):
+            raise LanguageError(f"'{slot}' is the position of a value without a slot, and keeps its name")
         for text in self.model.texts:
             if any(one.text == slot for one in text.slots):
                 word = actr_answers.giver(self.model, text, slot)

@@ -71,8 +71,8 @@ class Scopes:
             and value.children[-1].children[0] == "("
         )
 
-    def may_name_part(self, place: tuple[int, int]) -> bool:
-        """Returns whether the text at a line and column may name a part: `PMCompile(keep="goal")`; no value in a chunk, key or test."""
+    def may_name_member(self, place: tuple[int, int]) -> bool:
+        """Returns whether the text at a line and column may name a member: `attrgetter("ink")`; no value in a chunk, key or test."""
         node = self._module.get_leaf_for_position(place)
         while node is not None and node.type in ("string", "argument", "arglist", "atom", "testlist_comp"):
             node = node.parent
@@ -94,6 +94,10 @@ class Scopes:
             return None
         scope = self._scope(self._leaves[place])
         return str(scope.name.value) if scope.type == "funcdef" else ""
+
+    def is_parameter_of_decorated(self, place: tuple[int, int]) -> bool:
+        """Returns whether the plain name at a line and column is a parameter of a function with a decorator, which may pass it on."""
+        return self._type_of_binding(place) == "param" and self._scope(self._leaves[place]).parent.type == "decorated"
 
     def is_function_or_class(self, place: tuple[int, int]) -> bool:
         """Returns whether the plain name at a line and column is that of a function or class, defined, imported, or Python's own."""
@@ -155,6 +159,8 @@ class Scopes:
                 continue
             if scope.type == "classdef" and (number > 0 or leaf.start_pos < bound.start_pos or _is_value(leaf, bound)):
                 continue  # a class passes its names on to no function, and until it binds a name, that of a scope around it counts
+            if scope is self._module and _is_read_before(leaf, bound, scopes[:number]):
+                return None  # it is still that of Python, or of `from module import *`
             return scope
         return None
 
@@ -218,6 +224,13 @@ def _is_inside_function(function: Any, child: Any, leaf: Any) -> bool:
     while node is not function and node.type != "param":
         node = node.parent
     return node.type == "param" and node.name is leaf
+
+
+def _is_read_before(leaf: Any, bound: Any, inside: list[Any]) -> bool:
+    """Returns whether a module reads a name before it binds it first: in no function, which may run later, and in no loop."""
+    if any(scope.type in _FUNCTIONS for scope in inside) or leaf.search_ancestor("for_stmt", "while_stmt"):
+        return False
+    return leaf.start_pos < bound.start_pos or _is_value(leaf, bound)
 
 
 def _is_value(leaf: Any, bound: Any) -> bool:
