@@ -547,6 +547,8 @@ def test_renaming_says_in_which_lines_the_word_stays(ask: Asked) -> None:
     assert ask("rename", "class Big|Pole: pass\n\nbig_pole = BigPole(), 'big pole'\n", "Rod")["unchanged"] == [3]
     scopes = "def one(size): return size\ndef two(size): return size  # size\n"
     assert ask("rename", scopes.replace("size", "si|ze", 1), "width")["unchanged"] == [2]
+    table = 'def re|d(): pass\n\nTABLE = "colour\\nred\\tink"\n'  # a word after an escape
+    assert ask("rename", table, "blue")["unchanged"] == [3]
     assert ask("rename", scopes.replace("one", "o|ne", 1), "single")["unchanged"] == []
 
 

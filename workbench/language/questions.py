@@ -205,7 +205,8 @@ def _renamed(text: str, found: Renaming, new: str) -> tuple[str, list[int]]:
 def _unchanged(text: str, found: Renaming) -> list[int]:
     """Returns the lines in which a name stays as a word of any meaning, also in lower case, or as `big_pole` for `BigPole`."""
     forms = {found.name, re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", found.name)}
-    words = re.finditer(rf"\b(?:{'|'.join(map(re.escape, sorted(forms)))})\b", text, re.IGNORECASE)
+    begin = r"(?:(?<!\w)|(?<=\\[abfnrtv]))"  # in a string, it may follow an escape: "\nsize"
+    words = re.finditer(rf"{begin}(?:{'|'.join(map(re.escape, sorted(forms)))})\b", text, re.IGNORECASE)
     starts = set(found.starts)
     return sorted({text.count("\n", 0, one.start()) + 1 for one in words if one.start() not in starts})
 
