@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.test_runs_panel import recorded, row
 from tests.helpers.page import Users, drawn, open_tab, say, shows, until
@@ -208,6 +208,13 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
         expect(one.get_by_role("dialog")).to_have_count(0)
 
 
+def asked_before_change(page: Page) -> Locator:
+    """Empties the buffer of the goal; returns the question that the page asks before it does."""
+    change = {"type": "command", "word": "clear_buffer", "named": {"buffer": "goal"}}
+    page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
+    return page.get_by_role("dialog", name="Change the past?")
+
+
 def test_before_what_cannot_be_kept_is_lost_it_is_asked_also_if_the_run_is_recorded(pages: Pages, workbench: Served) -> None:
     page = pages("counting.py", tab="buffers", refusals=True)
     shows(page, "#status", "at its start")
@@ -218,9 +225,7 @@ def test_before_what_cannot_be_kept_is_lost_it_is_asked_also_if_the_run_is_recor
     where = workbench.folder / ".workbench" / "recordings"
     aside = where.rename(where.with_name("aside"))  # no file can be made there
     try:
-        change = {"type": "command", "word": "clear_buffer", "named": {"buffer": "goal"}}
-        page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
-        asked = page.get_by_role("dialog", name="Change the past?")
+        asked = asked_before_change(page)
         expect(asked).to_contain_text("What lies ahead, from 0.1 s to 0.2 s, would be lost: it cannot be kept (unable to open")
         asked.get_by_role("button", name="Change it anyway").click()
         shows(page, "#status", r"changed at 0\.10 s; the rest was lost")
@@ -247,9 +252,7 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_is_no_longer_said_to
         say(page, type="until", time=0.3)
         shows(page, "#time", r"t = 0\.30 s")
         at(page, 0.1)
-        change = {"type": "command", "word": "clear_buffer", "named": {"buffer": "goal"}}
-        page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
-        asked = page.get_by_role("dialog", name="Change the past?")
+        asked = asked_before_change(page)
         expect(asked).to_contain_text("What follows would not be recorded: ")
         asked.get_by_role("button", name="Change it anyway").click()
         shows(page, "#status", r"changed at 0\.10 s; what follows is not recorded")

@@ -11,6 +11,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 
 from workbench.language.model_text import Method, ModelText
+from workbench.language.tokens import line_of
 
 
 class ExplicitText:
@@ -58,7 +59,7 @@ def _parents(model: ModelText) -> Iterator[tuple[int, str]]:
         holders = " | ".join(one.name for one in model.holders(agent.name))
         if holders and agent.methods:
             method = min(agent.methods.values(), key=lambda one: one.start)
-            number = model.text.count("\n", 0, method.start) + 1
+            number = line_of(model.text, method.start)
             while number > 1 and lines[number - 2].lstrip().startswith("@"):
                 number -= 1
             indented = lines[number - 1][: method.column]

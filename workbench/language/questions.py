@@ -18,6 +18,7 @@ from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.same_words import SameWords
+from workbench.language.tokens import line_of
 
 FORMAT_TIME = 5.0
 """Maximum time that formatting may take [s]."""
@@ -152,7 +153,7 @@ class Assistant:
         same, _ = SameWords(ModelText(text), self._python, path).places(new, here)
         different = same ^ set(starts)
         if different:
-            line = text.count("\n", 0, min(different)) + 1
+            line = line_of(text, min(different))
             raise LanguageError(f"'{new}' already has a meaning in line {line}", line=line)
 
     @staticmethod
@@ -208,7 +209,7 @@ def _unchanged(text: str, found: Renaming) -> list[int]:
     begin = r"(?:(?<!\w)|(?<=\\[abfnrtv]))"  # in a string, it may follow an escape: "\nsize"
     words = re.finditer(rf"{begin}(?:{'|'.join(map(re.escape, sorted(forms)))})\b", text, re.IGNORECASE)
     starts = set(found.starts)
-    return sorted({text.count("\n", 0, one.start()) + 1 for one in words if one.start() not in starts})
+    return sorted({line_of(text, one.start()) for one in words if one.start() not in starts})
 
 
 def _plain(answer: Completion | Definition | Documentation | Hover | None, units: CodeUnits) -> Any:

@@ -19,6 +19,7 @@ from workbench.language.library_words import gives_joints, joints, slots_given
 from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, SlotName
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
+from workbench.language.tokens import line_of
 
 _MEMBER = r"""["'][\w.]*\.({0})\b[\w.]*["']|\b(?:get|set|has|del)attr\([^()\n]*,\s*["']({0})["']|["']({0})["'](?:\s*:|\]\s*=(?!=))"""
 """A member in a string: "walker.speed", getattr(self, "speed"), {"speed": 1}, values["speed"] = 1."""
@@ -151,7 +152,7 @@ class SameWords:
         return same, unproven | (strings - same)
 
     def _line(self, at: int) -> int:
-        return self.model.text.count("\n", 0, at) + 1
+        return line_of(self.model.text, at)
 
     def _may_be_in_strings(self, word: str, target: WordPlace) -> bool:
         """Returns whether a name may be computed: that of a parameter for `f(**values)`, or of a member for `getattr(one, name)`."""
@@ -180,8 +181,11 @@ class SameWords:
         """Returns whether a name is that of a class of things that vision finds."""
         if meaning.what != "local" or word not in self.model.agents:
             return False
-        bases = {base.rpartition(".")[2] for one in self.model.lineage(word) for base in one.bases}
-        return "Feature" in bases or _FEATURE in (self.members.above(word) or ())
+        return "Feature" in self._names_of_bases(word) or _FEATURE in (self.members.above(word) or ())
+
+    def _names_of_bases(self, kind: str) -> set[str]:
+        """Returns the names, without modules, of the classes of which a class of the text and those above it inherit."""
+        return {base.rpartition(".")[2] for one in self.model.lineage(kind) for base in one.bases}
 
     def _parts(self, word: str, meaning: Meaning) -> Iterator[Part]:
         """Yields the parts that a member means."""
@@ -439,9 +443,8 @@ class SameWords:
         """Returns whether vision may make a chunk of a thing of this class, with its attributes as slots."""
         if kind not in self.model.agents:
             return False
-        bases = {base.rpartition(".")[2] for one in self.model.lineage(str(kind)) for base in one.bases}
         above = self.members.above(str(kind))
-        if bases & {"Feature", "Model"} or above is None:
+        if self._names_of_bases(str(kind)) & {"Feature", "Model"} or above is None:
             return True
         return _MODEL in above and any(issubclass(one, readers_of("visible")) for one in self._library_classes)  # an agent, too
 
@@ -484,7 +487,8 @@ class SameWords:
         named = {part.kind: f"{one.name}.{part.name}" for one in agents for part in one.parts.values()}
         named |= {base: base for one in agents for base in one.bases}
         reading = {kind.__name__ for kind in READ}
-        named |= {path: path for one in self.model.names if one.text in reading for path in (".".join((*one.before, one.text)),)}
+        paths = (".".join((*one.before, one.text)) for one in self.model.names if one.text in reading)
+        named |= {path: path for path in paths}
         expressions = [expression for kind, expression in named.items() if kind not in self.model.agents]
         found = (self._python.classes_of(self.explicit, self._path, expression) for expression in expressions)
         return list(dict.fromkeys(kind for kinds in found for kind in kinds))

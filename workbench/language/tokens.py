@@ -66,3 +66,8 @@ def _tokens(code: str) -> Iterator[CodeToken]:
         else:
             names = {"NAME": "name", "FSTRING_STRING": "text", "OP": "sign", "NEWLINE": "end"}
             yield CodeToken(names.get(kind, "other"), token.string, start, line, column, first)
+
+
+def line_of(text: str, at: int) -> int:
+    """Returns the line of a position in a text, counted from 1."""
+    return text.count("\n", 0, at) + 1
