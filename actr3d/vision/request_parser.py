@@ -114,7 +114,8 @@ class _RequestReader:
     def __init__(self, detector: Detector, bound: Mapping[str, Any] | None, what: str) -> None:
         self._detector = detector
         self._kind = detector.finds
-        self._units = {slot: units_of(detector.finds)[slot] for slot in slot_names(detector.finds)}
+        units = units_of(detector.finds)
+        self._units = {slot: units[slot] for slot in slot_names(detector.finds)}
         self._bound = bound
         self._what = f"{what}: feature:{detector.name}"
 

@@ -31,18 +31,9 @@ class ActuatedDofs:
         base: The base of the body.
         joints: The joints of the body.
         members: (nbody,) by MuJoCo body: whether it is part of the body.
-        farthest: (nv,) For each degree of freedom: the greatest displacement of any point of the body per unit of it [m].
     """
 
-    def __init__(
-        self,
-        physics: Physics,
-        anatomy: Anatomy,
-        base: Base,
-        joints: Iterable[Joint],
-        members: NDArray[np.bool_],
-        farthest: Row,
-    ) -> None:
+    def __init__(self, physics: Physics, anatomy: Anatomy, base: Base, joints: Iterable[Joint], members: NDArray[np.bool_]) -> None:
         data = physics.mj_data
         model: Any = physics.mj_model
         names, walks = anatomy.servos, anatomy.walking_servos or ()
@@ -64,10 +55,8 @@ class ActuatedDofs:
         self._still = np.zeros(len(self.q))
         self.band: Row = model.actuator_forcerange[servos, 1] / model.actuator_gainprm[servos, 0]
         """Difference between control and speed from which the servo applies its full force."""
-        self.faces = base.faces
-        """Heading of the base when the third number of its place is 0 [rad]."""
         self._none = np.zeros(len(self.q), dtype=bool)
-        self._farthest = farthest
+        self._deviations = np.empty((3, len(self.q)))
         self.looped: NDArray[np.bool_] = _in_loop(model, members, self.v)
         """Those in a closed loop (both hands hold one load), which cannot all move independently."""
         self.loops = bool(self.looped.any())
@@ -133,8 +122,9 @@ class ActuatedDofs:
         Returns:
             None if none needs a correction. Else, (3, n): their ways back to the held places, NaN where they are to move [m] [rad]; their
             speeds beyond those that the servos keep; and the commanded speeds, or those that reach a limit just at the end [m/s] [rad/s].
+            The next call overwrites them.
         """
-        results = np.empty((3, len(self.q)))
+        results = self._deviations
         state, bounds = (self._qpos, self._qvel, self._ctrl), (self.lower, self.upper, duration, slight_way, slight_speed)
         needed = compute_deviations()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
         return results if needed else None
@@ -169,12 +159,6 @@ class ActuatedDofs:
             x, y = values.item(0), values.item(1)
             values[0], values[1] = c * x + s * y, c * y - s * x
         return values
-
-    def fastest(self, speeds: Row) -> float:
-        """Returns an upper bound of the speed of any point of the body [m/s]; infinite if a degree of freedom that moves it has no
-        servo."""
-        others = np.delete(self._farthest, self.v)
-        return float(speeds @ self._farthest[self.v]) if not others.any() else math.inf
 
 
 def _rows(numbers: list[Any]) -> NDArray[np.intp]:

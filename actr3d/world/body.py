@@ -124,7 +124,7 @@ class Body:
         self.contacts = BodyContacts(physics, self.members, skin, tuple(self.hands.values()))
         self.reaches = reaches(model, self.members, self.touch_geoms)
         """By moving part and degree of freedom (n, nv): the greatest way of the part's farthest point per unit of it [m]."""
-        dofs = ActuatedDofs(physics, self.anatomy, self.base, every, self.members, self.reaches.max(axis=0, initial=0.0))
+        dofs = ActuatedDofs(physics, self.anatomy, self.base, every, self.members)
         cycle = None
         if self.anatomy.gait is not None:
             cycle = GaitCycle(*self.anatomy.gait, dofs.joints, (seed, *self.name.encode()))
@@ -378,7 +378,8 @@ class Body:
         """Has joints at other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
         if self.contacts.held():
             raise WorldError(f"{self.name}: its size in another posture is not known while it holds an object")
-        there = {name: joint.position - self.hold.added_by_gait(name) for name, joint in self.joints.items() if self.hold.gait_moves(name)}
+        names, added = self.hold.added_by_gait
+        there = {name: self.joints[name].position - by for name, by in zip(names, added.tolist(), strict=True) if name in self.joints}
         there |= {name: at for name, at in positions.items() if self.joint(name)}
         if self.anatomy.gait is not None:
             there |= standing(there[STANCE] if STANCE in there else self._every[STANCE].position)

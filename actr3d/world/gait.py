@@ -7,7 +7,7 @@ steps are movements of the joints that it carries, held by their servos, so that
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Annotated, Any
@@ -146,7 +146,8 @@ class GaitCycle:
         names = [name for name in (*OWN, *SHARED) if name in rows]
         self.rows: NDArray[np.intp] = np.array([rows[name] for name in names], dtype=np.intp)
         """The rows that it moves."""
-        self._index = {row: number for number, row in enumerate(self.rows.tolist())}
+        self.joints: Sequence[str] = tuple(names)
+        """The same by name."""
         self._gait = gait
         self._legs = legs
         self._seed = seed
@@ -154,7 +155,7 @@ class GaitCycle:
         self._fastest = np.array([FASTEST.get(name, FASTEST_HINGE) for name in names])
         self._pattern: tuple[float, Row] | None = None
         self._drawn: dict[int, tuple[float, float, float]] = {}
-        self._added = np.zeros(len(names))
+        self.added = np.zeros(len(names))
         """What it has added to each joint's place [rad] [m]."""
         self._changes = np.zeros(len(names))
         """What it adds in this tick [rad] [m]."""
@@ -186,10 +187,10 @@ class GaitCycle:
         pattern = _STANDING if self._pattern is None else self._pattern[1]
         size = self._size * self._size * (3 - 2 * self._size)
         stride = (pattern, self._phase, wander, size, turn, direction - turn, arms)
-        greatest = stride_changes()(*stride, self._columns, _ROLES, self.rows, held, self._fastest, duration, self._added, self._changes)
+        greatest = stride_changes()(*stride, self._columns, _ROLES, self.rows, held, self._fastest, duration, self.added, self._changes)
         if not walks and self._size == 0 and greatest < TINY:
             return None
-        self._added += self._changes
+        self.added += self._changes
         return self._changes
 
     def _stride(self, speed: float, duration: float) -> float:
@@ -213,14 +214,6 @@ class GaitCycle:
         ease = into * into * (3 - 2 * into)
         return gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
 
-    def moves(self, row: int | None) -> bool:
-        """Returns whether it moves the joint of a row."""
-        return row in self._index
-
-    def added(self, row: int) -> float:
-        """Returns what it has added to the place of the joint of a row, one that it moves [rad] or [m]."""
-        return self._added.item(self._index[row])
-
     def _start(self) -> None:
         """Begins to walk at a random phase of the stride.
 
@@ -242,12 +235,12 @@ class GaitCycle:
     def state(self) -> tuple[Any, ...]:
         """Returns the stride as plain values."""
         pattern = None if self._pattern is None else self._pattern[0]
-        return (self._phase, self._steps, self._size, tuple(self._added.tolist()), pattern)
+        return (self._phase, self._steps, self._size, tuple(self.added.tolist()), pattern)
 
     def restore(self, state: tuple[Any, ...]) -> None:
         """Restores what `state` returned."""
         self._phase, self._steps, self._size, added, speed = state
-        self._added = np.array(added, dtype=np.float64)
+        self.added[:] = added
         self._pattern = None if speed is None else (speed, _pattern(self._gait, self._legs, speed))
 
 

@@ -11,12 +11,27 @@ from typing import Any, TypeAlias
 from mujoco import mjtGeom
 from numpy.typing import NDArray
 
-from actr3d.jit import kept
+from actr3d.jit import compiled, kept
 
 Array: TypeAlias = NDArray[Any]
 
 SPHERE, CAPSULE, ELLIPSOID = int(mjtGeom.mjGEOM_SPHERE), int(mjtGeom.mjGEOM_CAPSULE), int(mjtGeom.mjGEOM_ELLIPSOID)
-CYLINDER = int(mjtGeom.mjGEOM_CYLINDER)
+CYLINDER, BOX = int(mjtGeom.mjGEOM_CYLINDER), int(mjtGeom.mjGEOM_BOX)
+
+
+@compiled
+def extent(kind: Any, x: float, y: float, z: float, a: float, b: float, c: float) -> float:
+    """Returns the extent from its centre of a shape of sizes x, y and z, along a direction with the absolute coordinates a, b and c in the
+    shape's frame [m]."""
+    if kind == SPHERE:
+        return x
+    if kind == CAPSULE:
+        return x + y * c
+    if kind == ELLIPSOID:
+        return math.sqrt((x * a) ** 2 + (y * b) ** 2 + (z * c) ** 2)
+    if kind == CYLINDER:
+        return x * math.sqrt(a * a + b * b) + y * c
+    return x * a + y * b + z * c
 
 
 @cache
@@ -40,16 +55,7 @@ def _extend_box(
             a = abs(rotations[geom, 0] * u + rotations[geom, 3] * v + rotations[geom, 6] * w)
             b = abs(rotations[geom, 1] * u + rotations[geom, 4] * v + rotations[geom, 7] * w)
             c = abs(rotations[geom, 2] * u + rotations[geom, 5] * v + rotations[geom, 8] * w)
-            if kind == SPHERE:
-                far = x
-            elif kind == CAPSULE:
-                far = x + y * c
-            elif kind == ELLIPSOID:
-                far = math.sqrt((x * a) ** 2 + (y * b) ** 2 + (z * c) ** 2)
-            elif kind == CYLINDER:
-                far = x * math.sqrt(a * a + b * b) + y * c
-            else:
-                far = x * a + y * b + z * c
+            far = extent(kind, x, y, z, a, b, c)
             at = (positions[geom, 0] - origin[0]) * u + (positions[geom, 1] - origin[1]) * v + (positions[geom, 2] - origin[2]) * w
             box[0, axis] = min(box[0, axis], at - far)
             box[1, axis] = max(box[1, axis], at + far)

@@ -140,7 +140,7 @@ class Physics:
     @property
     def diverged(self) -> bool:
         """Whether MuJoCo has found NaN or huge values since the last `restore`."""
-        return bool(np.count_nonzero(self._warnings))
+        return any(self._warnings.tolist())
 
     def diverged_object(self) -> str:
         """Returns the name of the object in which MuJoCo found NaN or a huge value."""

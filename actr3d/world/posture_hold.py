@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
-from mujoco import mjtState
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
@@ -27,45 +27,6 @@ YIELD = 1e-3
 UNHINDERED, HINDERED = (0.02, 2.0), (0.1, 0.5)
 """Time constant of corrections [s] and their greatest speed [m/s] [rad/s], while nothing touches the body and while something does:
 a fast correction against a wall would bounce off it. Source: chosen for this library."""
-
-_PARTS = int(mjtState.mjSTATE_QPOS | mjtState.mjSTATE_QVEL | mjtState.mjSTATE_CTRL)
-
-
-class SteadyState:
-    """The state of a body without any deviation: held positions, commanded speeds and controls. The comparison with it is fast.
-
-    Args:
-        physics: The compiled scene and its state.
-        dofs: The actuated degrees of freedom of the body.
-        commanded: The commanded speeds.
-        held: The places to hold; NaN where it is commanded to move.
-    """
-
-    def __init__(self, physics: Physics, dofs: ActuatedDofs, commanded: Row, held: Row) -> None:
-        model: Any = physics.mj_model
-        stands = np.isfinite(held)
-        self._model, self._data = model, physics.mj_data
-        self._state: Row = np.zeros(mujoco.mj_stateSize(model, _PARTS))
-        self._rows = np.concatenate([dofs.q[stands], model.nq + dofs.v, model.nq + model.nv + dofs.c])
-        self._numbers: list[float] = [*held[stands].tolist(), *commanded.tolist(), *commanded.tolist()]
-        self._walks = bool(dofs.base and commanded[:2].any())
-        if self._walks:
-            self._first = int(np.count_nonzero(stands))
-            self._heading = int(dofs.q[2])
-            self._speed = math.hypot(*commanded[:2])
-            self._direction = math.atan2(commanded[1], commanded[0]) + dofs.faces
-        self.fastest = dofs.fastest(np.abs(commanded) + SLIGHT_WAY)
-        """Upper bound of the speed of any point of the body in this state [m/s]; infinite if not all of it is actuated."""
-
-    def is_reached(self) -> bool:
-        """Returns True if the state is near enough that nothing needs a correction; after False, something may."""
-        state, numbers = self._state, self._numbers
-        mujoco.mj_getState(self._model, self._data, state, _PARTS)
-        if self._walks:  # MuJoCo's speeds are along the world's axes
-            direction = self._direction + state.item(self._heading)
-            numbers[self._first] = self._speed * math.cos(direction)
-            numbers[self._first + 1] = self._speed * math.sin(direction)
-        return math.dist(state[self._rows].tolist(), numbers) < SLIGHT_WAY  # the distance of all numbers: none of them deviates by more
 
 
 class PostureHold:
@@ -113,27 +74,16 @@ class PostureHold:
         """Whether the last tick made a correction."""
         self._moves = False
         """Whether any joint is commanded to move."""
-        self._steady: SteadyState | None = None
-        """The state without deviations; None while a joint moves, and after a new command."""
-        self._new = True
-        """Whether there has been a command since the last tick began."""
 
     def row(self, joint: str) -> int | None:
         """Returns the row of a joint; None if it has no servo that this class controls."""
         return self._dofs.joints.get(joint)
 
-    def gait_moves(self, joint: str) -> bool:
-        """Returns whether gait moves a joint around the position at which it was commanded to stop."""
-        return self._gait is not None and self._gait.moves(self._dofs.joints.get(joint))
-
-    def added_by_gait(self, joint: str) -> float:
-        """Returns how far gait has moved a joint from the position at which it was commanded to stop [rad] or [m].
-
-        Args:
-            joint: A joint for which `gait_moves` is True.
-        """
-        assert self._gait is not None
-        return self._gait.added(self._dofs.joints[joint])
+    @property
+    def added_by_gait(self) -> tuple[Sequence[str], Row]:
+        """The joints that gait moves, and by how much it has moved each from the position at which it was commanded to stop [rad] [m]: an
+        array that stays up to date."""
+        return ((), np.zeros(0)) if self._gait is None else (self._gait.joints, self._gait.added)
 
     # -- commands
 
@@ -201,17 +151,12 @@ class PostureHold:
         row = None if joint is None else self.row(joint)
         if joint is not None and row is None:
             return
-        self._forget_steady()
         rows = slice(self._rows) if row is None else slice(row, row + 1)
         self.held[rows] = np.where(np.isfinite(self.held[rows]), self._dofs.places[rows], math.nan)
 
     def _command(self, rows: slice, speed: float | tuple[float, ...]) -> None:
-        self._forget_steady()
         self.commanded[rows] = speed
         self._dofs.set_controls(speed, rows)
-
-    def _forget_steady(self) -> None:
-        self._new, self._steady = True, None
 
     def _may_start(self, row: int | None = None) -> bool:
         """Returns whether the base, or the joint in a row, may reach its commanded speed at once: nothing touches the body or has
@@ -238,27 +183,16 @@ class PostureHold:
 
     # -- once a tick
 
-    def before_step(self, duration: float) -> float:
-        """Corrects deviations, for the next `duration` [s].
-
-        Returns:
-            An upper bound of the speed of any point of the body [m/s], where it is known quickly; else infinity.
-        """
-        if self._steady is not None and self._steady.is_reached():
-            self._without_deviation()
-            return self._steady.fastest
+    def before_step(self, duration: float) -> None:
+        """Corrects deviations, for the next `duration` [s]."""
         if self._moves:
             self._follow_loop()
         held = self.held if self._gait is None else self._walk(self._gait, duration)
         deviations = self._dofs.deviations(held, self.commanded, duration if self._moves else 0.0, SLIGHT_WAY, SLIGHT_SPEED)
-        if deviations is not None:
-            self._correct(*deviations)
-        else:
+        if deviations is None:
             self._without_deviation()
-            if self._steady is None and not (self._new or self._moves):
-                self._steady = SteadyState(self._physics, self._dofs, self.commanded, self.held)
-            self._new = False
-        return math.inf
+        else:
+            self._correct(*deviations)
 
     def _walk(self, gait: GaitCycle, duration: float) -> Row:
         """Moves the places that standing joints hold as the gait does, for the next `duration` [s], and commands the speeds for it.
@@ -272,7 +206,6 @@ class PostureHold:
         changes = gait.advance(forward, left, stance, torso, self.held, duration)
         held = self.held.copy()
         if dofs.shift_held(gait.rows, changes, self.held, self.commanded, held, duration):
-            self._forget_steady()
             self._moves = bool(self.commanded[self._rows :].any())
         return held
 
@@ -316,7 +249,6 @@ class PostureHold:
 
     def _yield(self, ways: Row) -> None:
         """Accepts the place to which the base was pushed, except for slight deviations."""
-        self._steady = None
         ways[: self._rows] = np.clip(ways[: self._rows], -YIELD, YIELD)
         self.held[: self._rows] = self._dofs.places[: self._rows] + ways[: self._rows]
 
@@ -344,7 +276,6 @@ class PostureHold:
 
     def restore(self, state: tuple[Any, ...]) -> None:
         """Restores a state that `state` returned."""
-        self._forget_steady()
         commanded, held, self.calm, self._struck, self._pulls, *gait = state
         if self._gait is not None:
             self._gait.restore(*gait)

@@ -104,12 +104,10 @@ class Substepping:
     def _prepare(self, count: int) -> bool:
         """Corrects the bodies before some steps. Returns whether these steps must be divided: a point of a body may move more than `STRIDE`
         in one of them, and an object is near enough for a collision."""
-        duration, speed = count * self._whole, 0.0
+        duration = count * self._whole
         for hold in self._holds:
-            speed = max(speed, hold.before_step(duration))
+            hold.before_step(duration)
         held = self._held()
-        if not held and speed * self._whole <= STRIDE:
-            return False
         speed = self._fastest(held)
         return speed * self._whole > STRIDE and self._near(held + speed * duration)
 

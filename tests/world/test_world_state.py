@@ -25,12 +25,11 @@ DERIVED = {
     ("Physics", "state_number"),  # counts states, so that readings of an earlier one are known to be stale
     ("Physics", "_updated"),  # whether MuJoCo's derived numbers are up to date
     ("Physics", "_scratch"),
-    ("Physics", "_numbers"),  # scratch memory
+    ("Physics", "_numbers"),
+    ("ActuatedDofs", "_deviations"),  # scratch memory
     ("Physics", "renderer"),  # draws pictures of the state
     ("ModelChanges", "_image"),
     ("ModelChanges", "_original"),  # created when first needed, and always the same
-    ("PostureHold", "_steady"),
-    ("PostureHold", "_new"),  # a short cut that never changes the result
     ("Body", "_senses"),  # all sensors that were ever created; those in use are in the state
     ("_Shapes", "_sizes"),
     ("_Shapes", "_formula"),  # computed again where sizes have changed

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -85,15 +84,16 @@ class Clearance:
     def _all(self, held: Sequence[int]) -> NDArray[np.intp]:
         return np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
 
-    def _nearest(self, geoms: NDArray[Any], segment: int) -> float:
+    def _nearest(self, geoms: NDArray[np.intp], segment: int) -> float:
         """Returns the smallest distance of any of some geoms to a segment [m]."""
         model, data = self._model, self._data
-        least = np.empty(len(geoms))
+        ordered, bounds = np.empty_like(geoms), np.empty(len(geoms))
+        shapes = model.geom_type, model.geom_size, data.geom_xpos, data.geom_xmat, model.geom_rbound
         box = data.geom_xpos[segment], data.geom_xmat[segment], model.geom_size[segment]
-        least_distances()(geoms, data.geom_xpos, model.geom_rbound, *box, least)
+        least_distances()(geoms, *shapes, *box, ordered, bounds)
         nearest = math.inf
-        for number in np.argsort(least, kind="stable").tolist():
-            if least[number] >= nearest:
+        for geom, bound in zip(ordered.tolist(), bounds.tolist(), strict=True):
+            if bound >= nearest + PRESSED:
                 break
-            nearest = min(nearest, mujoco.mj_geomDistance(model, data, int(geoms[number]), segment, 10.0, None))
+            nearest = min(nearest, mujoco.mj_geomDistance(model, data, geom, segment, 10.0, None))
         return nearest

@@ -7,23 +7,33 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+import actr3d.world.kernel
 from actr3d.jit import kept
-from actr3d.world.kernel import Array
+from actr3d.world.kernel import BOX, SPHERE, Array, extent
+
+END, DURATION, BEFORE, ANGLE, JOINTS, TURNED, ENTERED, LEFT, RIGHT = range(9)
+"""The columns of a table of samples, see `Passage`."""
+COLUMNS = RIGHT + 1
 
 
 @cache
-def posture() -> Callable[..., tuple[float, float, float]]:
-    """Returns the function that measures a body before a wall.
+def take_sample() -> Callable[..., float]:
+    """Returns the function that measures a body before a wall, and writes a row of samples, as if no part of it is between the faces now.
 
-    Its arguments are: the position of the body's axis (3,), of its left and its right shoulder (3,) [m]; the positions and speeds of all
-    joints; (n, 2) the indices in these of the joints that turn the shoulders, and (n,) their shares; the middle of the wall x, y [m], and
-    the direction through it x, y; and the time by which the joints are ahead of the positions [s]. It returns the distance of the
-    axis before the wall [m], the angle between shoulder line and wall [rad], and the angle of the joints [rad].
+    Its arguments are: the table of samples (n, COLUMNS) and the number of the row; the time of the joints [s], and by how much they are
+    ahead of the positions [s]; the position of the body's axis (3,), of its left and its right shoulder (3,) [m]; the positions and speeds
+    of all joints; (k, 2) the indices in these of the joints that turn the shoulders, and (k,) their shares; (m,) what gait adds to joints,
+    and their shares; the middle of the wall x, y [m], and the direction through it x, y. It returns the distance of the axis before the
+    wall [m].
     """
-    return kept(_posture, Path(__file__))
+    return kept(_take_sample, Path(__file__))
 
 
-def _posture(
+def _take_sample(
+    table: Array,
+    row: int,
+    end: float,
+    ahead: float,
     axis: Array,
     left: Array,
     right: Array,
@@ -31,38 +41,70 @@ def _posture(
     qvel: Array,
     joints: Array,
     shares: Array,
+    gait: Array,
+    gait_shares: Array,
     wall_x: float,
     wall_y: float,
     ahead_x: float,
     ahead_y: float,
-    ago: float,
-) -> tuple[float, float, float]:
+) -> float:
     before = (wall_x - axis[0]) * ahead_x + (wall_y - axis[1]) * ahead_y
     dx, dy = left[0] - right[0], left[1] - right[1]
-    angle = math.atan2(abs(dx * ahead_x + dy * ahead_y), abs(dy * ahead_x - dx * ahead_y))
-    turned = 0.0
-    for row in range(len(shares)):
+    angle = 0.0
+    for joint in range(len(shares)):
         # The integrator has moved the joints on from the positions, with these speeds.
-        turned += shares[row] * (qpos[joints[row, 0]] - ago * qvel[joints[row, 1]])
-    return before, angle, turned
+        angle += shares[joint] * (qpos[joints[joint, 0]] - ahead * qvel[joints[joint, 1]])
+    turned = angle
+    for joint in range(len(gait)):
+        turned -= gait_shares[joint] * gait[joint]
+    table[row, END], table[row, DURATION], table[row, BEFORE] = end, ahead, before
+    table[row, ANGLE] = math.atan2(abs(dx * ahead_x + dy * ahead_y), abs(dy * ahead_x - dx * ahead_y))
+    table[row, JOINTS], table[row, TURNED] = angle, turned
+    table[row, ENTERED] = table[row - 1, ENTERED] if row else 0.0
+    table[row, LEFT] = table[row, RIGHT] = math.nan
+    return before
 
 
 @cache
-def least_distances() -> Callable[[Array, Array, Array, Array, Array, Array, Array], None]:
-    """Returns the function that computes lower bounds of the distances of some geoms from a box [m].
+def least_distances() -> Callable[..., None]:
+    """Returns the function that computes lower bounds of the distances of some geoms from a box [m], and puts the geoms in their order.
 
-    Its arguments are: the geoms (n,), the positions of all geoms and the radii of the balls around them; the position (3,), rotation (9,)
-    and size (3,) of the box; and room for the results (n,).
+    Its arguments are: the geoms (n,); the types, sizes, positions and rotations of all geoms as in MuJoCo, and the radii of the balls
+    around them; the position (3,), rotation (9,) and size (3,) of the box; and room for the ordered geoms (n,) and their bounds (n,).
     """
-    return kept(_least_distances, Path(__file__))
+    return kept(_least_distances, Path(__file__), Path(actr3d.world.kernel.__file__))
 
 
-def _least_distances(geoms: Array, positions: Array, radii: Array, at: Array, rotation: Array, size: Array, distances: Array) -> None:
+def _least_distances(
+    geoms: Array,
+    types: Array,
+    sizes: Array,
+    positions: Array,
+    rotations: Array,
+    radii: Array,
+    at: Array,
+    rotation: Array,
+    size: Array,
+    ordered: Array,
+    bounds: Array,
+) -> None:
     for number, geom in enumerate(geoms):
+        kind = types[geom]
         x, y, z = positions[geom, 0] - at[0], positions[geom, 1] - at[1], positions[geom, 2] - at[2]
-        squares = 0.0
+        squares, bound = 0.0, -math.inf
         for axis in range(3):
-            beyond = abs(x * rotation[axis] + y * rotation[3 + axis] + z * rotation[6 + axis]) - size[axis]
+            u, v, w = rotation[axis], rotation[3 + axis], rotation[6 + axis]
+            beyond = abs(x * u + y * v + z * w) - size[axis]
             if beyond > 0:
                 squares += beyond * beyond
-        distances[number] = math.sqrt(squares) - radii[geom]
+            if SPHERE <= kind <= BOX:  # these have an extent along the axis
+                a = abs(rotations[geom, 0] * u + rotations[geom, 3] * v + rotations[geom, 6] * w)
+                b = abs(rotations[geom, 1] * u + rotations[geom, 4] * v + rotations[geom, 7] * w)
+                c = abs(rotations[geom, 2] * u + rotations[geom, 5] * v + rotations[geom, 8] * w)
+                bound = max(bound, beyond - extent(kind, sizes[geom, 0], sizes[geom, 1], sizes[geom, 2], a, b, c))
+        bound = max(bound, math.sqrt(squares) - radii[geom])
+        place = number
+        while place > 0 and bounds[place - 1] > bound:
+            bounds[place], ordered[place] = bounds[place - 1], ordered[place - 1]
+            place -= 1
+        bounds[place], ordered[place] = bound, geom

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
 from actr3d.experiment.aperture.clearance import Clearance
-from actr3d.experiment.aperture.kernel import posture
+from actr3d.experiment.aperture.kernel import (
+    ANGLE,
+    BEFORE,
+    COLUMNS,
+    DURATION,
+    END,
+    ENTERED,
+    JOINTS,
+    LEFT,
+    RIGHT,
+    TURNED,
+    take_sample,
+)
 from actr3d.simulation.measure import measure
 from actr3d.world import World
 from actr3d.world.scene_objects import Aperture
@@ -23,9 +35,11 @@ STANDS = 0.01
 """Speed below which a body stands [m/s]. Source: chosen for this library; less than any walk."""
 FASTEST = 20.0
 """No part of a body moves faster than this [m/s]. Source: chosen; a swinging arm reaches a few metres a second."""
+ROWS = 4096
+"""Samples for which there is room at first: those of a walk of 8 s, in steps of 2 ms."""
 TINY = 1e-9
 """Less than any physics step [s]."""
-TURNED = math.radians(1)
+TURNED_BY = math.radians(1)
 """Turn of the shoulders at which a turn begins [rad]. Source: chosen for this library."""
 
 
@@ -90,31 +104,6 @@ _NONE: Forces = {}
 """No contacts."""
 
 
-class _Sample(NamedTuple):
-    """The beginning of a physics step on the way."""
-
-    end: float
-    """The end of the physics step [s]."""
-    time: float
-    """Its beginning [s]."""
-    before: float
-    """Distance of the axis before the wall [m]."""
-    angle: float
-    """Between shoulder line and wall [rad]."""
-    logged: float
-    """Torso plus clavicle, and the stance [rad]."""
-    turned: float
-    """The same without the part that gait adds [rad]."""
-    room: tuple[float, float] | None
-    """To the left and right segment [m], while a part of the body is between the faces of the wall."""
-    entered: bool
-    """Whether a part of the body has been in the doorway; one that leans against the wall beside it is pressed between the faces, too."""
-    duration: float
-    """Of the physics step [s]."""
-    forces: Forces
-    """Of its contacts."""
-
-
 @measure
 class Passage:
     """Measures one body at one aperture, at every physics step.
@@ -126,7 +115,20 @@ class Passage:
 
     def __init__(self, body: str, aperture: str = "aperture") -> None:
         self._names = body, aperture
-        self._samples: list[_Sample] = []
+        self._table: NDArray[np.float64] = np.empty((ROWS, COLUMNS))
+        """The beginnings of the physics steps on the way, in their order; only the first `_count` rows are in use. The columns:
+
+        - `END`: the end of the physics step [s], `DURATION`: its duration [s].
+        - `BEFORE`: the distance of the axis before the wall [m].
+        - `ANGLE`: between shoulder line and wall [rad].
+        - `JOINTS`: of torso plus clavicle, and the stance [rad]; `TURNED`: the same without the part that gait adds [rad].
+        - `ENTERED`: 1 if a part of the body has been in the doorway. One that leans against the wall beside it is pressed between the
+          faces, too.
+        - `LEFT`, `RIGHT`: the room to the segments [m]; NaN while no part of the body is between the faces of the wall.
+        """
+        self._count = 0
+        self._forces: dict[float, Forces] = {}
+        """By the end of a physics step with contacts [s], their forces."""
 
     def begin(self, world: World) -> None:
         """Finds body and aperture.
@@ -153,9 +155,10 @@ class Passage:
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
         turning = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
         rows = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
-        self._read = self._axis, *shoulders, data.qpos, data.qvel, *rows, *middle
-        """What `posture` reads."""
-        self._stepping = [(name, share) for name, share in hinges.items() if self._body.hold.gait_moves(name)]
+        stepping, added = self._body.hold.added_by_gait
+        gait = added, np.array([hinges.get(name, 0.0) for name in stepping])
+        self._read = self._axis, *shoulders, data.qpos, data.qvel, *rows, *gait, *middle
+        """What `take_sample` reads."""
         self._mass = float(model.body_subtreemass[self._body.root])
         x, y, _ = self._axis.tolist()
         self._start = x, y
@@ -164,44 +167,58 @@ class Passage:
         self._away = math.inf, math.inf
 
     def look(self) -> None:
-        """Stores a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
-        end, ago, samples = self._data.time, self._options.timestep, self._samples
+        """Adds a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
+        end, ago, number = self._data.time, self._options.timestep, self._count
         x, y, _ = self._axis.tolist()
-        number = len(samples)
-        if number and end <= samples[-1].end + TINY:  # the run has gone back
+        if number and end <= self._table.item(number - 1, END) + TINY:  # the run has gone back
             number = self._number_until(end - ago)
-            del samples[number : self._number_until(end)]
+            self._remove(number, self._number_until(end))
         if math.dist((x, y), self._start) < SET_OUT:
             return
         if not number and math.hypot(self._qvel[self._slide], self._qvel[self._slide + 1]) < STANDS:
             self._start = x, y  # it was put elsewhere before it set out
         else:
-            samples.insert(number, self._sample(end, ago, number > 0 and samples[number - 1].entered))
+            self._insert(number)
+            self._sample(number, end, ago)
+
+    def _remove(self, first: int, last: int) -> None:
+        """Removes the samples from number `first` to before `last`."""
+        for time in self._table[first:last, END].tolist():
+            self._forces.pop(time, None)
+        self._table = np.delete(self._table, slice(first, last), axis=0)
+        self._count -= last - first
+
+    def _insert(self, number: int) -> None:
+        """Makes room for a sample before that of a number."""
+        if number < self._count:
+            self._table = np.insert(self._table, number, 0.0, axis=0)
+        elif number >= len(self._table):
+            self._table = np.resize(self._table, (2 * number + ROWS, COLUMNS))
+        self._count += 1
 
     def _number_until(self, time: float) -> int:
         """Returns the number of samples up to a time [s]."""
-        return bisect_right(self._samples, time + TINY, key=lambda sample: sample.end)
+        return int(np.searchsorted(self._table[: self._count, END], time + TINY, side="right"))
 
-    def _sample(self, end: float, ago: float, entered: bool) -> _Sample:
-        """Returns the sample of a physics step.
+    def _sample(self, number: int, end: float, ago: float) -> None:
+        """Measures a sample.
 
         Args:
+            number: Its number.
             end: The time of the joints [s].
             ago: By how much they are ahead of the geometry [s].
-            entered: Whether a part of the body has been in the doorway before.
         """
-        time = end - ago
-        before, angle, logged = posture()(*self._read, ago)
-        turned = logged
-        for name, share in self._stepping:
-            turned -= share * self._body.hold.added_by_gait(name)
+        table, time = self._table, end - ago
+        before = take_sample()(table, number, end, ago, *self._read)
         left, back = self._away
-        room = self._room(time) if abs(before) < self._reach and not left <= time < back else None
-        if room is not None and not entered:
-            entered = self._clearance.is_inside(room, self._contacts.held())
-        touches = self._contacts.touches() if self._data.ncon else ()
-        forces = {(touch.part, touch.other): touch.force for touch in touches} if touches else _NONE
-        return _Sample(end, time, before, angle, logged, turned, room, entered, ago, forces)
+        if abs(before) < self._reach and not left <= time < back:
+            room = self._room(time)
+            if room is not None:
+                table[number, LEFT:] = room
+                if not table[number, ENTERED]:
+                    table[number, ENTERED] = self._clearance.is_inside(room, self._contacts.held())
+        if self._data.ncon and (touches := self._contacts.touches()):
+            self._forces[end] = {(touch.part, touch.other): touch.force for touch in touches}
 
     def _room(self, time: float) -> tuple[float, float] | None:
         """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces: then it notes until when
@@ -216,59 +233,61 @@ class Passage:
     def result(self, *, over: bool) -> PassageResult:
         """Returns the result up to now."""
         now = float(self._world.mj_data.time)
-        samples = self._samples[: self._number_until(now)]
-        at_wall = next((sample for sample in samples if sample.before <= 0), None)
-        onset = _onset(samples)
-        rooms = [sample.room for sample in samples if sample.room is not None] if samples and samples[-1].entered else []
-        impulses = _impulses(samples)
-        last = at_wall or (samples[-1] if samples else None)
-        way = samples[0].before - last.before if last is not None else 0.0
-        walked = last.time - samples[0].time if last is not None else 0.0
+        samples = self._table[: self._number_until(now)]
+        before, time = samples[:, BEFORE], samples[:, END] - samples[:, DURATION]
+        behind = (before <= 0).nonzero()[0]
+        reached = samples[behind[0]] if len(behind) else None
+        last = int(behind[0]) if len(behind) else len(samples) - 1
+        way, walked = (before.item(0) - before.item(last), time.item(last) - time.item(0)) if len(samples) else (0.0, 0.0)
+        onset = _onset(np.abs(samples[:, TURNED]))
+        between = samples[~np.isnan(samples[:, LEFT])] if len(samples) and samples[-1, ENTERED] else samples[:0]
+        impulses = self._impulses(now)
+        forces = (max(forces.values()) for end, forces in self._forces.items() if end <= now + TINY)
         return PassageResult(
-            outcome=_outcome(samples[-1] if samples else None, over),
-            peak_angle_deg=_degrees(max(sample.angle for sample in samples)) if samples else None,
-            wall_angle_deg=_degrees(at_wall.angle) if at_wall else None,
-            logged_angle_deg=_degrees(abs(at_wall.logged)) if at_wall else None,
-            onset_distance_m=round(onset.before, 4) if onset else None,
-            onset_time_s=round(onset.time, 3) if onset else None,
+            outcome=_outcome(samples[-1] if len(samples) else None, over),
+            peak_angle_deg=_degrees(samples[:, ANGLE].max()) if len(samples) else None,
+            wall_angle_deg=_degrees(reached[ANGLE]) if reached is not None else None,
+            logged_angle_deg=_degrees(abs(reached[JOINTS])) if reached is not None else None,
+            onset_distance_m=round(before.item(onset), 4) if onset is not None else None,
+            onset_time_s=round(time.item(onset), 3) if onset is not None else None,
             contacts=len(impulses),
-            max_force_n=round(max((force for sample in samples for force in sample.forces.values()), default=0.0), 1),
+            max_force_n=round(max(forces, default=0.0), 1),
             impulse_n_s=round(math.fsum(impulses), 2),
             impact_j=round(math.fsum(impulse**2 for impulse in impulses) / (2 * self._mass), 3),
-            clearance_left_m=round(min(left for left, _ in rooms), 4) if rooms else None,
-            clearance_right_m=round(min(right for _, right in rooms), 4) if rooms else None,
+            clearance_left_m=round(between[:, LEFT].min().item(), 4) if len(between) else None,
+            clearance_right_m=round(between[:, RIGHT].min().item(), 4) if len(between) else None,
             speed_m_s=round(way / walked, 3) if walked else None,
             time_s=round(now, 3),
         )
 
+    def _impulses(self, now: float) -> list[float]:
+        """Returns the impulse of each contact up to now, from its start to its end [N s]."""
+        ended: list[float] = []
+        present: dict[tuple[str, str], float] = {}
+        if not self._forces:
+            return ended
+        for end, duration in self._table[: self._number_until(now), (END, DURATION)].tolist():
+            forces = self._forces.get(end, _NONE)
+            if forces or present:
+                ended += [impulse for pair, impulse in present.items() if pair not in forces]
+                present = {pair: present.get(pair, 0.0) + force * duration for pair, force in forces.items()}
+        return [*ended, *present.values()]
 
-def _onset(samples: list[_Sample]) -> _Sample | None:
-    """Returns the first sample of the turn that leads to the greatest angle; None if the shoulders never turn."""
-    angles = [abs(sample.turned) for sample in samples]
-    number = angles.index(max(angles)) if angles else -1
-    if number < 0 or angles[number] < TURNED:
+
+def _onset(angles: NDArray[np.float64]) -> int | None:
+    """Returns the number of the first sample of the turn that leads to the greatest angle; None if the shoulders never turn."""
+    number = int(angles.argmax()) if len(angles) else 0
+    if not len(angles) or angles[number] < TURNED_BY:
         return None
-    while number and angles[number - 1] >= TURNED:
-        number -= 1
-    return samples[number]
+    less = (angles[:number] < TURNED_BY).nonzero()[0]
+    return int(less[-1]) + 1 if len(less) else 0
 
 
-def _impulses(samples: list[_Sample]) -> list[float]:
-    """Returns the impulse of each contact, from its start to its end [N s]."""
-    ended: list[float] = []
-    present: dict[tuple[str, str], float] = {}
-    for sample in samples:
-        if sample.forces or present:
-            ended += [impulse for pair, impulse in present.items() if pair not in sample.forces]
-            present = {pair: present.get(pair, 0.0) + force * sample.duration for pair, force in sample.forces.items()}
-    return [*ended, *present.values()]
-
-
-def _outcome(last: _Sample | None, over: bool) -> Literal["passed", "declined", "stopped"]:
+def _outcome(last: NDArray[np.float64] | None, over: bool) -> Literal["passed", "declined", "stopped"]:
     if last is None:
         return "declined" if over else "stopped"
-    return "passed" if last.before < 0 and last.room is None else "stopped"
+    return "passed" if last[BEFORE] < 0 and math.isnan(last[LEFT]) else "stopped"
 
 
-def _degrees(angle: float) -> float:
+def _degrees(angle: np.float64) -> float:
     return round(math.degrees(angle), 2)
