@@ -32,6 +32,8 @@ BLOB = 1_000_000
 """The approximate size of a row of states [bytes]."""
 MAX_EVENTS = 10_000
 """The maximum number of events in a row."""
+BLOCK = 32
+"""The number of events that are converted to JSON at once: one that JSON cannot represent slows down its block alone."""
 
 MARK_BYTES = 4 * 8
 """The size of the marks of a state [bytes]."""
@@ -244,7 +246,7 @@ class Writer:
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
             return
-        rows = [(part, plain_to_json(part, _one_by_one)) for part in _parts(events, MAX_EVENTS)]
+        rows = [(part, _to_json(part)) for part in _parts(events, MAX_EVENTS)]
         self._transact(self._insert_all, rows, states, facts, commands, answers)
 
     def _insert_all(
@@ -383,8 +385,12 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
     return [things[start : start + most] for start in range(0, len(things), most)]
 
 
-def _one_by_one(events: list[TraceEvent]) -> str:
+def _to_json(events: list[TraceEvent]) -> str:
     """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
+    return f"[{', '.join(plain_to_json(block, _one_by_one)[1:-1] for block in _parts(events, BLOCK))}]"
+
+
+def _one_by_one(events: list[TraceEvent]) -> str:
     return f"[{', '.join(plain_to_json(event, _converted) for event in events)}]"
 
 
