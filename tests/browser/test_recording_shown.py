@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import resource
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.test_runs_panel import recorded, row
+from tests.helpers.full_disk import full_disk
 from tests.helpers.page import Users, drawn, open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 
@@ -245,10 +245,7 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_is_no_longer_said_to
     page.goto(f"{workbench.url}/?run={name}")
     banner, link = page.locator(".recording-banner"), page.get_by_role("button", name="Copy a link")
     expect(banner).to_contain_text("3.35 s recorded")
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    for worker in workers(workbench.process.pid):
-        resource.prlimit(worker, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow
-    try:
+    with full_disk(lambda: workers(workbench.process.pid)):
         say(page, type="until", time=0.3)
         shows(page, "#time", r"t = 0\.30 s")
         at(page, 0.1)
@@ -256,9 +253,6 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_is_no_longer_said_to
         expect(asked).to_contain_text("What follows would not be recorded: ")
         asked.get_by_role("button", name="Change it anyway").click()
         shows(page, "#status", r"changed at 0\.10 s; what follows is not recorded")
-    finally:
-        for worker in workers(workbench.process.pid):
-            resource.prlimit(worker, resource.RLIMIT_FSIZE, limits)
     for _ in range(2):
         expect(banner).to_contain_text("No longer recorded")
         expect(link).to_be_disabled()

@@ -177,3 +177,10 @@ class Talk:
 
 class RefusedError(Exception):
     """The session has refused something."""
+
+
+def workers_of(talk: Talk) -> list[int]:
+    """Returns the process that runs a session's model."""
+    worker = talk.session._worker
+    assert worker is not None
+    return [worker.pid]

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 import re
-import resource
 import time
-from collections.abc import Generator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from actr3d.recording import Recorded
-from tests.helpers.sessions import Desk, RefusedError, Talk
+from tests.helpers.full_disk import full_disk
+from tests.helpers.sessions import Desk, RefusedError, Talk, workers_of
 from tests.server.test_curves import PUSHED
 from tests.server.test_run_changes import MODELS, reopened
 from workbench import retention
@@ -137,24 +135,11 @@ def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
     assert len(found(talk)) == 1
 
 
-@contextmanager
-def full_disk(talk: Talk) -> Generator[None]:
-    """Lets no file of a session's worker grow, as on a full disk."""
-    worker = talk.session._worker
-    assert worker is not None
-    limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
-    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))
-    try:
-        yield
-    finally:
-        resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, limits)
-
-
 def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_still_be_seen(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED, record=True)
     there(talk, 40)
     talk.say("seek", time=0.1)
-    with full_disk(talk):
+    with full_disk(lambda: workers_of(talk)):
         with pytest.raises(RefusedError, match=r"what lies ahead, from 0.1 s to 0.4 s, would be lost: it cannot be kept"):
             talk.say("command", word="aperture", values=[0.3])
         change = COMMAND.validate_python({"type": "command", "word": "aperture", "values": [0.3]})
@@ -208,7 +193,7 @@ def test_a_run_that_is_changed_on_a_full_disk_goes_on_unrecorded(kind: str, fail
     talk = begun("model.py")
     talk.say("until", time=1.0)
     talk.until("paused", time=1.0)
-    with full_disk(talk):
+    with full_disk(lambda: workers_of(talk)):
         if failed:
             talk.say("run")
             talk.until("failed")
@@ -243,7 +228,7 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(k
     source, _, below = MODELS[kind]
     path, talk = reopened(desk, tmp_path, source)
     clear = {"word": "clear_buffer", "named": {"buffer": f"{below}goal"}}
-    with full_disk(talk):
+    with full_disk(lambda: workers_of(talk)):
         talk.say("until", time=0.2)
         talk.until("paused", time=0.2)
         time.sleep(0.5)  # what was run until then has been written, or cannot be
@@ -297,7 +282,7 @@ def test_an_opened_recording_that_goes_on_beyond_its_end_is_not_kept_if_no_file_
     kind: str, desk: Desk, tmp_path: Path
 ) -> None:
     path, talk = reopened(desk, tmp_path, MODELS[kind][0])
-    with full_disk(talk):
+    with full_disk(lambda: workers_of(talk)):
         talk.say("until", time=0.5)
         talk.until("paused", time=0.5)
         talk.wait(lambda: talk.facts["recording"] is None)

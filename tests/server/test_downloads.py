@@ -8,13 +8,12 @@ import io
 import json
 import math
 import re
-import resource
 import sqlite3
 import subprocess
 import sys
 import tempfile
-from collections.abc import Generator, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Iterator
+from contextlib import closing
 from io import FileIO
 from pathlib import Path
 
@@ -24,7 +23,8 @@ import pytest
 
 from actr3d.recording import Recorded, Recording
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, Answer, call
-from tests.helpers.sessions import Desk
+from tests.helpers.full_disk import full_disk
+from tests.helpers.sessions import Desk, workers_of
 from tests.server.test_recorded_runs import APERTURE, HELPED, ended
 from tests.server.test_runs import firing, written
 from workbench.app import make_app
@@ -74,12 +74,9 @@ Flood().run(200)
 
 def test_a_run_whose_recording_can_no_longer_be_written_does_not_blame_a_line_of_the_model(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, FLOOD, record=True)
-    worker = talk.session._worker
-    assert worker is not None
-    limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
-    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (300_000, limits[1]))
-    talk.say("run")
-    talk.until("failed")
+    with full_disk(lambda: workers_of(talk), 300_000):
+        talk.say("run")
+        talk.until("failed")
     (notice,) = [one for one in (json.loads(text) for _, text in talk.session.notices) if one["level"] == "error"]
     kept = r"the first [\d,]+ events of the run are kept, nothing of what came after"
     assert re.fullmatch(rf"cannot write the recording '.*': .*; {kept}", notice["text"])
@@ -93,7 +90,7 @@ def test_a_run_whose_recording_can_no_longer_be_written_does_not_blame_a_line_of
 
 def test_a_run_that_cannot_begin_on_a_full_disk_ends_with_the_reason(desk: Desk, tmp_path: Path) -> None:
     ended(desk.begin(tmp_path, HELPED.replace("from helper import WORD", 'WORD = "go"')))  # the process that starts workers is ready
-    with nearly_full_disk(desk, 1):
+    with full_disk(lambda: forking(desk), 1):
         talk = desk.begin(tmp_path, FLOOD, name="flood.py", record=True, wait=None)
         for run in talk.session._going:
             desk.do(run.over.wait())
@@ -106,7 +103,7 @@ def test_a_run_that_cannot_begin_on_a_full_disk_leaves_nothing_of_the_run_before
     ended(talk)
     feed = talk.session.join("page")
     assert json.loads(desk.do(feed.next()))["state"]["events"] > 0
-    with nearly_full_disk(desk, 1):
+    with full_disk(lambda: forking(desk), 1):
         desk.do(talk.session.restart(None, None))
         begun = talk.session._newest
         assert begun is not None
@@ -204,26 +201,20 @@ def test_a_copy_is_cancelled_when_no_client_waits_for_it(desk: Desk, tmp_path: P
         assert b"nobody waits for it any more" in desk.do(left(holder)).body
 
 
-@contextmanager
-def nearly_full_disk(desk: Desk, room: int) -> Generator[None]:
-    """Lets no worker write a file of more than `room` bytes."""
+def forking(desk: Desk) -> list[int]:
+    """Returns the process that starts workers, which have its limits."""
     fork_server = desk.workers._fork_server
     assert fork_server is not None
-    limits = resource.prlimit(fork_server.process.pid, resource.RLIMIT_FSIZE)
-    resource.prlimit(fork_server.process.pid, resource.RLIMIT_FSIZE, (room, limits[1]))
-    try:
-        yield
-    finally:
-        resource.prlimit(fork_server.process.pid, resource.RLIMIT_FSIZE, limits)
+    return [fork_server.process.pid]
 
 
 def test_a_copy_that_cannot_be_written_is_reported(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / ".workbench" / "recordings").mkdir(parents=True)
     with Recording(tmp_path / ".workbench" / "recordings" / "m.sqlite", {"kind": "program", "text": "x" * 200_000}):
         assert download(desk, tmp_path, "m", "events.csv").status == 200  # all that a worker needs is loaded now
-        with nearly_full_disk(desk, 50_000):
+        with full_disk(lambda: forking(desk), 50_000):
             copy = download(desk, tmp_path, "m", "sqlite")
-        with nearly_full_disk(desk, 1_000):
+        with full_disk(lambda: forking(desk), 1_000):
             page = download(desk, tmp_path, "m", "replay.html")
     assert (copy.status, page.status) == (409, 409)
     assert b"the recording cannot be copied: " in copy.body
@@ -239,7 +230,7 @@ def test_a_disk_that_was_full_leaves_no_broken_bytecode(tmp_path: Path, monkeypa
     desk = Desk()
     try:
         assert download(desk, tmp_path, "m", "events.csv").status == 200
-        with nearly_full_disk(desk, 1_000):
+        with full_disk(lambda: forking(desk), 1_000):
             assert download(desk, tmp_path, "m", "replay.html").status == 409
         assert download(desk, tmp_path, "m", "replay.html").status == 200
     finally:
