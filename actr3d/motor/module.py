@@ -636,14 +636,15 @@ class Motor(WithParameters, Port):
                 step=self.extreme_step,
                 slide=self.extreme_slide,
             )
-            new: Sequence[str] = limbs.order
+            joints: Sequence[str] = limbs.order
+            changed: Sequence[str] = SIZES
         else:
-            new = schema.feel(positions, sizes)
-        for joint in new:
+            joints, changed = schema.feel(positions, sizes)
+        for joint in joints:
             self._become(limbs.shown_as[joint], schema.at[joint])
-        for name, size in schema.box.items():
-            self._become(name, size)
-        self._further = schema.extremes(new)
+        for name in changed:
+            self._become(name, schema.box[name])
+        self._further = schema.extremes(joints)
 
     def _remember(self, limbs: Limbs, ended: list[tuple[Movement, str]]) -> None:
         """Stores the posture after movements have ended, at new extremes of joints, and on request."""

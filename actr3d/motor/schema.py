@@ -75,25 +75,28 @@ class BodySchema:
         self.box = {name: self.size(size) for name, size in zip(SIZES, sizes, strict=True)}
         """By name, the felt sizes on the grid [m]."""
 
-    def feel(self, positions: Sequence[float], sizes: Sequence[float]) -> Sequence[str]:
+    def feel(self, positions: Sequence[float], sizes: Sequence[float]) -> tuple[Sequence[str], Sequence[str]]:
         """Updates what is felt, in the order of the body and of `SIZES` [rad] or [m], and the values on the grid.
 
         Returns:
-            The joints whose value on the grid has changed, or that are at least one step beyond their extremes in all earlier postures.
+            The joints whose value on the grid has changed, or that are at least one step beyond their extremes in all earlier postures; and
+            the sizes whose value on the grid has changed.
         """
         self._felt = positions
         count = note_felt()(np.array((*positions, *sizes)), self._rows, self._new)
-        new: list[str] = []
+        joints: list[str] = []
+        changed: list[str] = []
         numbers: list[int] = self._new[:count].tolist()
         for number in numbers:
             if number < len(positions):
                 joint = self.limbs.order[number]
-                new.append(joint)
+                joints.append(joint)
                 self.at[joint] = self.shown(joint, positions[number])
             else:
                 number -= len(positions)
+                changed.append(SIZES[number])
                 self.box[SIZES[number]] = self.size(sizes[number])
-        return new
+        return joints, changed
 
     def felt(self, joint: str) -> float:
         """Returns the felt position of a joint [rad] or [m]."""

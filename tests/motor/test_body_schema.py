@@ -20,7 +20,7 @@ def test_felt_positions_and_extremes_are_those_of_each_single_reading(step: floa
     least, most = list(now), list(now)
     for _ in range(400):
         now, sizes = [[at + draw.gauss(0, step) for at in of] for of in (now, sizes)]
-        new = schema.feel(now, sizes)
+        new, _ = schema.feel(now, sizes)
         least, most = [*map(min, least, now)], [*map(max, most, now)]
         for number, joint in enumerate(limbs.order):
             grid = 1.0 if limbs.joints[joint].kind == "hinge" else 0.001
