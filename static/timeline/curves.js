@@ -211,6 +211,9 @@ let busy = false;
 let again = false;
 let newer = false; // whether the newest stretch was requested last, while the run is active
 
+/** What known data belongs to: the way that the run took to the present, and whether there is a world, as a program may create one later. */
+const history = () => `${way.peek()} ${Boolean(session.peek()?.world)}`;
+
 const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart count as the same [s]
 
 function changed() {
@@ -218,8 +221,8 @@ function changed() {
 }
 
 /** Removes everything, as the run continues differently, or another one is shown. */
-function forget(history) {
-  of = history;
+function forget(whose) {
+  of = whose;
   key = "";
   counted = -1;
   Object.assign(known, { times: [], values: new Map(), events: new Map(), until: null, whole: [] });
@@ -349,9 +352,9 @@ async function ask() {
 
 /** Requests missing data, if any; returns whether there may be more. Ignores data of another history. */
 async function askOnce() {
-  const history = `${way.peek()} ${Boolean(session.peek()?.world)}`; // a program may create its world later
-  if (of !== history) forget(history);
-  const isNew = named !== history;
+  const asked = history();
+  if (of !== asked) forget(asked);
+  const isNew = named !== asked;
   const events = needsEvents();
   const list = isNew ? [] : names.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
   if (key !== list.join("\n")) begin(list);
@@ -364,11 +367,11 @@ async function askOnce() {
   Object.assign(stretch, { first: exactTime(Math.max(0, stretch.from - near())), last: exactTime(stretch.to + near()) });
   const seen = !events ? null : isNew ? 0 : ofEvents.peek().length;
   const answer = await say({ type: "curves", names: list, first: stretch.first, last: stretch.last, most: stretch.most, seen });
-  if (of !== history || !history.startsWith(`${way.peek()} `)) return true;
+  if (of !== asked || !asked.startsWith(`${way.peek()} `)) return true;
   const [bodies, more] = [true, false].map((isBody) => answer.names.filter(({ shape }) => (shape === "line") === isBody));
   if (isNew || bodies.length !== ofBodies.peek().length) ofBodies.value = bodies; // another world was added
   if (isNew || more.length > 0) ofEvents.value = isNew ? more : [...ofEvents.peek(), ...more];
-  named = history;
+  named = asked;
   if (events) counted = count;
   if (events && basis !== answer.basis) {
     basis = answer.basis;
@@ -393,7 +396,7 @@ const eventCount = computed(() => state.value?.events);
 effect(() => {
   for (const one of [furthest, running, chosen, session, way, span, offered, eventCount]) one.value;
   if (alive.value) ask();
-  else if (!session.value && of !== null) {
+  else if (of !== null && (!session.value || of !== history())) {
     forget(null);
     named = null;
     for (const known of [ofBodies, ofEvents]) known.value = [];

@@ -259,6 +259,19 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_is_no_longer_said_to
         page.reload()
 
 
+def test_a_run_that_cannot_begin_on_a_full_disk_leaves_no_curves_of_the_run_before(pages: Pages, workbench: Served) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=1.0)
+    shows(page, "#time", r"t = 1\.00 s")
+    timeline, curves = page.locator(".timeline"), page.get_by_role("button", name="Curves", exact=True)
+    expect(curves).to_be_visible()
+    with full_disk(lambda: workers(workbench.process.pid)):
+        page.click("#restart")
+        expect(timeline).to_contain_text("There is no run any more: cannot write the recording")
+        expect(curves).to_have_count(0)
+
+
 def at(page: Page, time: float) -> None:
     """Goes to a time of the run."""
     say(page, type="seek", time=time)
