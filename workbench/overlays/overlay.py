@@ -15,7 +15,6 @@ from actr3d.registry import Registry
 if TYPE_CHECKING:
     from actr3d.camera import CameraParameters
     from actr3d.simulation import Simulation
-    from workbench.page_commands.command import PageCommand
 
 OVERLAYS: Registry[type[Overlay]] = Registry("overlay")
 """All overlays by name, in the order of the menu."""
@@ -32,8 +31,8 @@ class Drawn(NamedTuple):
     """The compiled scene."""
     world: dict[str, Any]
     """The contents of the world, as in `Facts.world`."""
-    send: Callable[[PageCommand], None]
-    """Sends a command of a user to the session; may be called from any thread."""
+    send: Callable[[Any], None]
+    """Sends a command of a user, a `PageCommand`, to the session; may be called from any thread."""
 
 
 class Observed(NamedTuple):
