@@ -15,6 +15,7 @@ from actr3d.experiment.specification import library_designs
 from actr3d.vision import DETECTORS
 from actr3d.world.body import ACTUATORS, SENSORS
 from tests.helpers.manual import FENCE, PAGES, ROOT, check, compare, has_code
+from tests.helpers.manual_site import build_strictly
 from tests.helpers.motor_bodies import moving, until
 from workbench.overlays import OVERLAYS
 
@@ -115,3 +116,14 @@ def test_the_tables_of_overlays_and_designs_have_all_of_them(tables: Any) -> Non
     assert all(f"| `{name}` | " in found for name in library_designs())
     assert "(Friedman et al. 1964)." in found
     assert all(f"| {kind.title} | Shows " in tables.table("overlays") for kind in OVERLAYS.values())
+
+
+def test_a_broken_link_fails_the_build_of_the_manual(tmp_path: Path) -> None:
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "mkdocs.yml").write_text("site_name: Manual\n", encoding="utf-8")
+    page = tmp_path / "docs" / "index.md"
+    page.write_text("# Start\n", encoding="utf-8")
+    build_strictly(tmp_path)
+    page.write_text("# Start\n\nSee [nothing](no-such-page.md).\n", encoding="utf-8")
+    with pytest.raises(AssertionError, match=r"no-such-page\.md"):
+        build_strictly(tmp_path)

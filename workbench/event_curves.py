@@ -263,7 +263,7 @@ def _path(system: str, production: str) -> str:
 
 
 def _extremes(values: Sequence[float], most: int) -> Sequence[int]:
-    """Returns the places of at most so many values: all, or the least, the greatest and the last one of each group of as many values."""
+    """Returns the places of at most `most` values: all, or the least, the greatest and the last one of each group of as many values."""
     count = len(values)
     if count <= most:
         return range(count)

@@ -31,7 +31,7 @@ STILL = 1e-7
 ZOOM, ZOOMS = 10, 5
 """The number of parts into which the step with the bound of an interval is divided, and how often values are compared."""
 ROUNDING = 1e-6
-"""By how large a part of itself a sum of squares may differ if it is calculated again, together with other ones."""
+"""The relative difference that a sum of squares may have if it is calculated again, together with other ones."""
 SMOOTH = 5e-4
 """How much means without jumps scatter around what is predicted where they bend, at most: as a part of their variance over candidates."""
 LEAST = 1e-10

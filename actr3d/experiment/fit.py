@@ -369,7 +369,7 @@ class Fit:
         places = np.array([self._parts_of(self._points[n]) for n in usable])
 
         def errors(found: _Simulated, place: Any) -> list[float]:
-            # From the differences to the nearest candidate, but none so near that the model may draw the same numbers.
+            # From the differences to the nearest candidate, but none so near that the model may draw the same random numbers.
             distances: NDArray[np.float64] = np.linalg.norm(places - place, axis=1)
             distances[distances <= 1 / STEPS] = np.inf
             nearest = int(np.argmin(distances))
@@ -415,7 +415,7 @@ class Fit:
         emulator = self._emulator(self.target)
         point = emulator.bound(turn // 2, upper=turn % 2 == 1) if is_bound else emulator.minimum
         near, nearer = (np.round(point * steps) / steps for steps in (STEPS, 100 * STEPS))
-        # A candidate close to an earlier one says little elsewhere, such as beyond a jump: each other time, TPE looks there instead.
+        # A candidate close to an earlier one adds little elsewhere, such as beyond a jump: every second one is proposed by TPE instead.
         return [self._values_at(one) for one in ([near] if is_bound or number // 2 % 2 else [near, nearer, point])]
 
     def _evaluate(self, number: int, what: str) -> None:
@@ -606,7 +606,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     if measure is not None and (not trial_has or measure in trial_has):
         measures = [*measures, measure]  # an error of the reader names it, whether or not the data have it
     if trial_has and measure is None and len(set(measures)) <= 1:
-        measures = trial_has  # the reader names the line with another one, or says which there are
+        measures = trial_has  # the reader's error names the line of an unknown one, or lists those that are known
     parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
     schema = Schema(
         groups=list(design.groups),

@@ -63,7 +63,7 @@ class Source(Configuration):
 
 @dataclass(frozen=True, kw_only=True)
 class Specification(Configuration):
-    """Everything that determines the rows of an experiment, but for data files that the model reads."""
+    """Everything that determines the rows of an experiment, except data files that the model reads."""
 
     name: str
     """The name of the design."""

@@ -42,7 +42,7 @@ except KeyboardInterrupt:
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What is said of a recording that was run again."""
+    """The result of a replay."""
 
     code: int
     """`AGREES`, `DIFFERS`, or `UNKNOWN` if neither is known."""

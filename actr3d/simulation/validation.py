@@ -23,7 +23,7 @@ def world_of(scene: Any, seed: int) -> World:
     if isinstance(scene, World):
         if scene.time:
             now = seconds(scene.time)
-            raise SimulationError(f"Simulation.scene: the world must be at its start, as the agents are (it has come to {now:g} s)")
+            raise SimulationError(f"Simulation.scene: the world must be at its start, as the agents are (got one at {now:g} s)")
         return scene
     if not isinstance(scene, Scene):
         hint = f"; {WITHOUT_BODY}" if scene is None else ""

@@ -32,7 +32,7 @@ export function SeedField() {
     order({ type: "restart", seed: wanted.trim() });
     event.currentTarget.blur();
   }
-  return html`<label class="seed-field ${mine && text !== known ? "waits" : ""}" title="The seed of the run. Enter restarts with the one that is written here">
+  return html`<label class="seed-field ${mine && text !== known ? "waits" : ""}" title="The seed of the run. Enter restarts with this seed">
     <input
       aria-label="Seed"
       inputmode="numeric"

@@ -11,7 +11,7 @@ export const LANE = 16;
 /** The height of a plot without the names of its curves, and that of a name [px]. */
 export const [PLOT, NAME] = [20, 13];
 const HEIGHTS = [PLOT + NAME, 500]; // the limits of the height of a plot [px]
-const USUAL = [2, 6]; // a plot that nobody has resized has room for the names of its curves: for so many at least, and at most
+const USUAL = [2, 6]; // a plot that nobody has resized has room for the names of its curves; the minimum and maximum number of them
 /** The distance of the earliest visible time from the column of names, so that what is at it is drawn whole [px]. */
 export const MARGIN = 8;
 const GAP = 5; // between two groups

@@ -25,6 +25,17 @@ def built_manual() -> Path:
         listed = subprocess.run(["git", "ls-files", "-z", *SOURCES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
         changed = max(path.stat().st_mtime for name in listed.split("\0") if name and (path := ROOT / name).exists())
         if not SITE.is_dir() or not built.exists() or built.stat().st_mtime <= changed:
-            subprocess.run([sys.executable, "-m", "mkdocs", "build", "--quiet"], cwd=ROOT, check=True, timeout=600)
+            build_strictly(ROOT)
             built.touch()
     return SITE
+
+
+def build_strictly(folder: Path) -> None:
+    """Builds the manual of a folder with `mkdocs.yml`; a warning fails. Without `--quiet`, which hides warnings from the strict mode, too.
+
+    Raises:
+        AssertionError: If there is a warning or an error; with all that mkdocs says.
+    """
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, check=False)
+    assert done.returncode == 0, done.stderr

@@ -403,7 +403,7 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.run(until=True), r"run\(until\): must be a function that takes a Glimpse \(got True\)"),
     (lambda s: Simulation(odd(None)), r"got None\); an agent without a body .* plain assignments at the top of the file"),
     (lambda s: Simulation(odd("room")), r"Simulation\.scene: must be a Scene or a World \(got 'room'\)"),
-    (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the agents are \(it has come to 0\.02 s\)"),
+    (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the agents are \(got one at 0\.02 s\)"),
     (
         lambda s: Simulation(Scene(), seed=odd(1.5)),
         r"Simulation\.seed: must be a whole number >= 0 or a text .*got 1\.5",

@@ -99,7 +99,7 @@ def widths_in(model: MjModel, walls: Mapping[str, Any]) -> Iterable[tuple[str, f
 
     Args:
         model: The scene.
-        walls: The places of the apertures, by name; see `actr3d.world.Gap`.
+        walls: The places of the apertures, by name; see `actr3d.world.scene_objects.Gap`.
     """
     for name, gap in walls.items():
         left, right = gap["segments"]

@@ -389,7 +389,7 @@ def _of_part(model: ModelText, part: Part) -> str:
 
 
 def _kinds(model: ModelText, part: Part) -> list[str]:
-    """Returns the class of a part and, if the text defines it, those that it inherits from."""
+    """Returns the class of a part, and, if the text defines it, those that it inherits from."""
     kinds = [part.kind]
     for kind in kinds:
         kinds += [base for base in model.agents[kind].bases if base not in kinds] if kind in model.agents else []

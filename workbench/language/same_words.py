@@ -244,7 +244,7 @@ class SameWords:
             for slot in text.slots:
                 if slot.text == word:
                     yield WordPlace(start=slot.start, name=None, meaning=self._of_slot(text, slot))
-                elif word in slot.text.split("."):  # of what the path leads to
+                elif word in slot.text.split("."):  # it names something that the path leads to
                     yield WordPlace(start=slot.start + f".{slot.text}.".index(f".{word}."), name=None, meaning=None)
             for piece in self._variables(text):
                 if piece.text == word:
@@ -380,7 +380,7 @@ class SameWords:
         return any(one is not None and parameter.text in one.parameters for one in found)
 
     def _is_known(self, argument: Name) -> bool:
-        """Returns whether it is known what a call with a keyword argument calls: no variable, which may be any function."""
+        """Returns whether the function that a call with a keyword argument calls is known; a variable may hold any."""
         if len(argument.called) > 1:
             return True
         called = next((one for one in reversed(self.model.names) if one.start < argument.start and (one.text,) == argument.called), None)
@@ -419,7 +419,7 @@ class SameWords:
         """Returns False if a word whose meaning is not known cannot mean the same as another; None if it can."""
         one, name = target.meaning, other.name
         assert one is not None
-        if name is None:  # of a part whose class is not known
+        if name is None:  # it belongs to a part whose class is not known
             return None if one.what in ("slot", "member") else False
         if not name.called or not name.keyword:
             method = self.model.method(name.method)

@@ -264,5 +264,5 @@ def _bounded(message: Message) -> bytes:
         return framed(Reply(id=message.id, error=f"the answer is too long ({len(message.result):,} bytes); ask for less"))
     data = framed(message)
     if len(data) > LONGEST:
-        return framed(Notice(level="error", text=f"what the workbench has to say of this run is too long ({len(data):,} bytes)"))
+        return framed(Notice(level="error", text=f"a message about this run is too long ({len(data):,} bytes)"))
     return data

@@ -686,7 +686,7 @@ class ProgramRun(ControlledRun):
             raise _Again
 
     def _set_off(self, time: int) -> None:
-        """Begins the way to another time [us]."""
+        """Starts to seek to another time [us]."""
         self._rush = time
         self._controller.set_off(f"going to {time_text(seconds(time), longest=seconds(self._furthest))}")
 

@@ -235,7 +235,7 @@ class Workers:
                 self._report_end()
 
     def _end_workers(self) -> None:
-        """Kills all workers, whose end nobody reports any more."""
+        """Kills all workers, without reporting their end."""
         workers = list(self._alive.values())
         self._alive.clear()
         for worker in workers:
