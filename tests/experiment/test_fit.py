@@ -244,7 +244,7 @@ def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) 
 def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client: Any) -> None:
     """The range is a thousand times as wide as the interval."""
     line = LINE.replace("noise = 0.1", "noise = 0.0").replace("offset = 0.5", "offset = 0.9")
-    result = fit_of(tmp_path, client, "slope=0..100", line=line).run(STARTING + 8)
+    result = fit_of(tmp_path, client, "slope=0..100", line=line, options={"participants": 1}).run(STARTING + 8)
     (slope,) = result.parameters
     best = 1.4 + 0.1 * 15 / 55  # of a line through 0.9, for data of one through 1
     assert result.is_confirmed
@@ -291,7 +291,9 @@ def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that
     model, people = tmp_path / "line.py", tmp_path / "people.csv"
     one = JUMP.replace("participants=4, ", "").replace('"x": [1,', '"own": [-0.5, 0, 0.5], "x": [1,')
     one = re.sub(r"Group\(.*\)", "Group(participants=1)", one)
-    text = {"nothing": JUMP.replace("sd=0.5", "sd=0"), "participants": JUMP, "trials": one}[differ]
+    text = {"nothing": JUMP.replace("sd=0.5", "sd=0").replace("participants=4", "participants=1"), "participants": JUMP, "trials": one}[
+        differ
+    ]
     model.write_text(text, encoding="utf-8")
     people.write_text("x,measure,mean,source\n" + "".join(f"{x},y,{1.4 * x + 1},ours\n" for x in range(1, 6)), encoding="utf-8")
     words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
@@ -307,7 +309,7 @@ def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that
 
 def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, client: Any) -> None:
     line = LINE.replace("slope = 2.0", "slope = 1.0").replace("self.value = slope", "assert slope <= 1.2\n        self.value = slope")
-    result = fit_of(tmp_path, client, "slope=0..3", line=line).run(STARTING + 10)
+    result = fit_of(tmp_path, client, "slope=0..3", line=line, options={"participants": 1}).run(STARTING + 10)
     (slope,) = result.parameters
     assert 1.1 < slope.value <= 1.2
     assert slope.high is None
@@ -316,8 +318,8 @@ def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, c
 
 def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, client: Any) -> None:
     (tmp_path / "a").mkdir()
-    whole = fit_of(tmp_path / "a", client).run(8)
-    first = fit_of(tmp_path / "a", client)
+    whole = fit_of(tmp_path / "a", client, options={"participants": 1}).run(8)
+    first = fit_of(tmp_path / "a", client, options={"participants": 1})
     again = first.run(8)
     assert again == whole
     folders = [path.name for path in (tmp_path / "a" / "fit").iterdir()]
