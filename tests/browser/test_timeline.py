@@ -1348,6 +1348,7 @@ def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pa
     assert page.evaluate(shown) < 1.3 * last  # a click does not move the axis
 
 
+@pytest.mark.slow
 def test_on_the_way_to_another_time_steps_back_are_counted_from_where_it_goes_and_stop_leaves_it_where_it_is(
     pages: Callable[..., Page], workbench: Served
 ) -> None:

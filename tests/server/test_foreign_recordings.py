@@ -157,6 +157,7 @@ def test_a_file_that_takes_too_long_is_left_out_and_holds_up_no_other(desk: Desk
     )
 
 
+@pytest.mark.slow
 def test_too_much_memory_is_reported(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("workbench.readers.READER_MEMORY", 50)
     path = written(tmp_path, "m", firing(3))

@@ -909,6 +909,7 @@ report(Base(), size=4)
 """
 
 
+@pytest.mark.daily(44)
 @pytest.mark.parametrize(
     ("text", "why"),
     [
