@@ -248,7 +248,8 @@ class ModelText:
         return self.agents[agent].methods.get(name) if agent in self.agents else None
 
     def lineage(self, agent: str) -> list[Agent]:
-        """Returns a class and the classes whose parts it can access, nearest first: those that it inherits from, and the agents that it is a part of."""
+        """Returns a class and the classes whose parts it can access, nearest first: those that it inherits from, and the agents that it
+        is a part of."""
         found: list[Agent] = []
         waiting = [agent]
         while waiting:

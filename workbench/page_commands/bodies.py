@@ -135,7 +135,7 @@ class Curves(Question):
     """End of the interval, included [s]; None for the furthest time of the run."""
     most: int = Field(default=1_000, ge=2, le=5_000)
     """Maximum number of times, evenly spaced; the last moment of the interval is included, and so are moments of contacts. A shorter
-    interval is returned completely. Of a curve of events, at most `most` values are returned; its extremes and the last value are included."""
+    interval is returned completely. Of a curve of events, at most `most` values are returned, with its extremes and the last value."""
     seen: int | None = Field(default=0, ge=0)
     """How many curves of events the page knows: `names` need not list these again. None if it wants no curves of events: computing them
     takes time."""
