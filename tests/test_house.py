@@ -152,21 +152,19 @@ def test_no_module_needs_itself_to_be_imported() -> None:
 @pytest.mark.parametrize("package", ["actr3d", "workbench"])
 def test_no_module_knows_itself_through_others_not_even_for_types(package: str) -> None:
     """Imports for type checkers and inside functions count, too, also those of names that the `__init__.py` of a folder passes on."""
-    paths = sorted((ROOT / package).rglob("*.py"))
-    passed_on = {path: path.name == "__init__.py" for path in paths}
-    known = {module_name(path) for path in paths if not passed_on[path]}
-    defined: dict[str, str] = {}
+    files = [path for path in sorted((ROOT / package).rglob("*.py")) if path.name != "__init__.py"]
+    known = {module_name(path) for path in files}
+    passed_on: dict[str, str] = {}
+
+    def imported(path: Path) -> list[str]:
+        return [name for node in imports_of(path) for name in imported_by(node, package_of(path))]
 
     def module_of(name: str) -> str:
-        return name if name in known else defined.get(name, name.rpartition(".")[0])
+        return name if name in known else passed_on.get(name, name.rpartition(".")[0])
 
-    for path in sorted(paths, key=lambda path: -len(path.parts)):
-        for name in [name for node in imports_of(path) for name in imported_by(node, package_of(path)) if passed_on[path]]:
-            defined[f"{module_name(path)}.{name.rpartition('.')[2]}"] = module_of(name)
-    needs: dict[str, set[str]] = {name: set() for name in known}
-    for path in paths:
-        for name in [name for node in imports_of(path) for name in imported_by(node, package_of(path)) if not passed_on[path]]:
-            needs[module_name(path)] |= {module_of(name)} & known
+    for path in sorted((ROOT / package).rglob("__init__.py"), key=lambda path: -len(path.parts)):  # innermost first
+        passed_on |= {f"{module_name(path)}.{name.rpartition('.')[2]}": module_of(name) for name in imported(path)}
+    needs = {module_name(path): {module_of(name) for name in imported(path)} & known for path in files}
     assert len(list(TopologicalSorter(needs).static_order())) == len(known) > 50
 
 

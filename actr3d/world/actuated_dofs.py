@@ -56,7 +56,6 @@ class ActuatedDofs:
         self.band: Row = model.actuator_forcerange[servos, 1] / model.actuator_gainprm[servos, 0]
         """Difference between control and speed from which the servo applies its full force."""
         self._none = np.zeros(len(self.q), dtype=bool)
-        self._deviations = np.empty((3, len(self.q)))
         self.looped: NDArray[np.bool_] = _in_loop(model, members, self.v)
         """Those in a closed loop (both hands hold one load), which cannot all move independently."""
         self.loops = bool(self.looped.any())
@@ -122,9 +121,8 @@ class ActuatedDofs:
         Returns:
             None if none needs a correction. Else, (3, n): their ways back to the held places, NaN where they are to move [m] [rad]; their
             speeds beyond those that the servos keep; and the commanded speeds, or those that reach a limit just at the end [m/s] [rad/s].
-            The next call overwrites them.
         """
-        results = self._deviations
+        results = np.empty((3, len(self.q)))
         state, bounds = (self._qpos, self._qvel, self._ctrl), (self.lower, self.upper, duration, slight_way, slight_speed)
         needed = compute_deviations()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
         return results if needed else None

@@ -20,9 +20,13 @@ CYLINDER, BOX = int(mjtGeom.mjGEOM_CYLINDER), int(mjtGeom.mjGEOM_BOX)
 
 
 @compiled
-def extent(kind: Any, x: float, y: float, z: float, a: float, b: float, c: float) -> float:
-    """Returns the extent from its centre of a shape of sizes x, y and z, along a direction with the absolute coordinates a, b and c in the
-    shape's frame [m]."""
+def extent(geom: Any, types: Array, sizes: Array, rotations: Array, u: float, v: float, w: float) -> float:
+    """Returns the extent of a geom from its centre along a direction (u, v, w) [m], given the types, sizes and rotations of all geoms."""
+    kind, x, y, z = types[geom], sizes[geom, 0], sizes[geom, 1], sizes[geom, 2]
+    # The direction in the geom's frame.
+    a = abs(rotations[geom, 0] * u + rotations[geom, 3] * v + rotations[geom, 6] * w)
+    b = abs(rotations[geom, 1] * u + rotations[geom, 4] * v + rotations[geom, 7] * w)
+    c = abs(rotations[geom, 2] * u + rotations[geom, 5] * v + rotations[geom, 8] * w)
     if kind == SPHERE:
         return x
     if kind == CAPSULE:
@@ -48,14 +52,9 @@ def _extend_box(
     geoms: Array, types: Array, sizes: Array, positions: Array, rotations: Array, origin: Array, axes: Array, box: Array
 ) -> None:
     for geom in geoms:
-        kind, x, y, z = types[geom], sizes[geom, 0], sizes[geom, 1], sizes[geom, 2]
         for axis in range(3):
             u, v, w = axes[0, axis], axes[1, axis], axes[2, axis]
-            # The axis in the geom's frame.
-            a = abs(rotations[geom, 0] * u + rotations[geom, 3] * v + rotations[geom, 6] * w)
-            b = abs(rotations[geom, 1] * u + rotations[geom, 4] * v + rotations[geom, 7] * w)
-            c = abs(rotations[geom, 2] * u + rotations[geom, 5] * v + rotations[geom, 8] * w)
-            far = extent(kind, x, y, z, a, b, c)
+            far = extent(geom, types, sizes, rotations, u, v, w)
             at = (positions[geom, 0] - origin[0]) * u + (positions[geom, 1] - origin[1]) * v + (positions[geom, 2] - origin[2]) * w
             box[0, axis] = min(box[0, axis], at - far)
             box[1, axis] = max(box[1, axis], at + far)

@@ -77,15 +77,15 @@ def test_a_run_whose_recording_can_no_longer_be_written_does_not_blame_a_line_of
     with full_disk(lambda: workers_of(talk), 300_000):
         talk.say("run")
         talk.until("failed")
-    (notice,) = [one for one in (json.loads(text) for _, text in talk.session.notices) if one["level"] == "error"]
-    kept = r"the first [\d,]+ events of the run are kept, nothing of what came after"
-    assert re.fullmatch(rf"cannot write the recording '.*': .*; {kept}", notice["text"])
-    assert (notice["file"], notice["line"]) == (None, None)
-    assert talk.state["reason"] == notice["text"]
-    talk.say("seek", time=0.0)
-    talk.until("paused", time=0.0)
-    assert notice["events"] == 0, "it is shown at every moment"
-    assert talk.sessions.writing() == {}
+        (notice,) = [one for one in (json.loads(text) for _, text in talk.session.notices) if one["level"] == "error"]
+        kept = r"the first [\d,]+ events of the run are kept, nothing of what came after"
+        assert re.fullmatch(rf"cannot write the recording '.*': .*; {kept}", notice["text"])
+        assert (notice["file"], notice["line"]) == (None, None)
+        assert talk.state["reason"] == notice["text"]
+        talk.say("seek", time=0.0)
+        talk.until("paused", time=0.0)
+        assert notice["events"] == 0, "it is shown at every moment"
+        assert talk.sessions.writing() == {}
 
 
 def test_a_run_that_cannot_begin_on_a_full_disk_ends_with_the_reason(desk: Desk, tmp_path: Path) -> None:

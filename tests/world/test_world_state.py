@@ -25,8 +25,7 @@ DERIVED = {
     ("Physics", "state_number"),  # counts states, so that readings of an earlier one are known to be stale
     ("Physics", "_updated"),  # whether MuJoCo's derived numbers are up to date
     ("Physics", "_scratch"),
-    ("Physics", "_numbers"),
-    ("ActuatedDofs", "_deviations"),  # scratch memory
+    ("Physics", "_numbers"),  # scratch memory
     ("Physics", "renderer"),  # draws pictures of the state
     ("ModelChanges", "_image"),
     ("ModelChanges", "_original"),  # created when first needed, and always the same

@@ -11,7 +11,7 @@ import actr3d.world.kernel
 from actr3d.jit import kept
 from actr3d.world.kernel import BOX, SPHERE, Array, extent
 
-END, DURATION, BEFORE, ANGLE, JOINTS, TURNED, ENTERED, LEFT, RIGHT = range(9)
+END, DURATION, BEFORE, ANGLE, LOGGED, TURNED, ENTERED, LEFT, RIGHT = range(9)
 """The columns of a table of samples, see `Passage`."""
 COLUMNS = RIGHT + 1
 
@@ -33,7 +33,7 @@ def _take_sample(
     table: Array,
     row: int,
     end: float,
-    ahead: float,
+    ago: float,
     axis: Array,
     left: Array,
     right: Array,
@@ -53,13 +53,13 @@ def _take_sample(
     angle = 0.0
     for joint in range(len(shares)):
         # The integrator has moved the joints on from the positions, with these speeds.
-        angle += shares[joint] * (qpos[joints[joint, 0]] - ahead * qvel[joints[joint, 1]])
+        angle += shares[joint] * (qpos[joints[joint, 0]] - ago * qvel[joints[joint, 1]])
     turned = angle
     for joint in range(len(gait)):
         turned -= gait_shares[joint] * gait[joint]
-    table[row, END], table[row, DURATION], table[row, BEFORE] = end, ahead, before
+    table[row, END], table[row, DURATION], table[row, BEFORE] = end, ago, before
     table[row, ANGLE] = math.atan2(abs(dx * ahead_x + dy * ahead_y), abs(dy * ahead_x - dx * ahead_y))
-    table[row, JOINTS], table[row, TURNED] = angle, turned
+    table[row, LOGGED], table[row, TURNED] = angle, turned
     table[row, ENTERED] = table[row - 1, ENTERED] if row else 0.0
     table[row, LEFT] = table[row, RIGHT] = math.nan
     return before
@@ -89,7 +89,6 @@ def _least_distances(
     bounds: Array,
 ) -> None:
     for number, geom in enumerate(geoms):
-        kind = types[geom]
         x, y, z = positions[geom, 0] - at[0], positions[geom, 1] - at[1], positions[geom, 2] - at[2]
         squares, bound = 0.0, -math.inf
         for axis in range(3):
@@ -97,11 +96,8 @@ def _least_distances(
             beyond = abs(x * u + y * v + z * w) - size[axis]
             if beyond > 0:
                 squares += beyond * beyond
-            if SPHERE <= kind <= BOX:  # these have an extent along the axis
-                a = abs(rotations[geom, 0] * u + rotations[geom, 3] * v + rotations[geom, 6] * w)
-                b = abs(rotations[geom, 1] * u + rotations[geom, 4] * v + rotations[geom, 7] * w)
-                c = abs(rotations[geom, 2] * u + rotations[geom, 5] * v + rotations[geom, 8] * w)
-                bound = max(bound, beyond - extent(kind, sizes[geom, 0], sizes[geom, 1], sizes[geom, 2], a, b, c))
+            if SPHERE <= types[geom] <= BOX:  # these have an extent along the axis
+                bound = max(bound, beyond - extent(geom, types, sizes, rotations, u, v, w))
         bound = max(bound, math.sqrt(squares) - radii[geom])
         place = number
         while place > 0 and bounds[place - 1] > bound:

@@ -19,8 +19,8 @@ from actr3d.experiment.aperture.kernel import (
     DURATION,
     END,
     ENTERED,
-    JOINTS,
     LEFT,
+    LOGGED,
     RIGHT,
     TURNED,
     take_sample,
@@ -39,7 +39,7 @@ ROWS = 4096
 """Samples for which there is room at first: those of a walk of 8 s, in steps of 2 ms."""
 TINY = 1e-9
 """Less than any physics step [s]."""
-TURNED_BY = math.radians(1)
+LEAST_TURN = math.radians(1)
 """Turn of the shoulders at which a turn begins [rad]. Source: chosen for this library."""
 
 
@@ -121,7 +121,7 @@ class Passage:
         - `END`: the end of the physics step [s], `DURATION`: its duration [s].
         - `BEFORE`: the distance of the axis before the wall [m].
         - `ANGLE`: between shoulder line and wall [rad].
-        - `JOINTS`: of torso plus clavicle, and the stance [rad]; `TURNED`: the same without the part that gait adds [rad].
+        - `LOGGED`: of torso plus clavicle, and the stance [rad]; `TURNED`: the same without the part that gait adds [rad].
         - `ENTERED`: 1 if a part of the body has been in the doorway. One that leans against the wall beside it is pressed between the
           faces, too.
         - `LEFT`, `RIGHT`: the room to the segments [m]; NaN while no part of the body is between the faces of the wall.
@@ -241,13 +241,13 @@ class Passage:
         way, walked = (before.item(0) - before.item(last), time.item(last) - time.item(0)) if len(samples) else (0.0, 0.0)
         onset = _onset(np.abs(samples[:, TURNED]))
         between = samples[~np.isnan(samples[:, LEFT])] if len(samples) and samples[-1, ENTERED] else samples[:0]
-        impulses = self._impulses(now)
+        impulses = self._impulses(samples)
         forces = (max(forces.values()) for end, forces in self._forces.items() if end <= now + TINY)
         return PassageResult(
             outcome=_outcome(samples[-1] if len(samples) else None, over),
             peak_angle_deg=_degrees(samples[:, ANGLE].max()) if len(samples) else None,
             wall_angle_deg=_degrees(reached[ANGLE]) if reached is not None else None,
-            logged_angle_deg=_degrees(abs(reached[JOINTS])) if reached is not None else None,
+            logged_angle_deg=_degrees(abs(reached[LOGGED])) if reached is not None else None,
             onset_distance_m=round(before.item(onset), 4) if onset is not None else None,
             onset_time_s=round(time.item(onset), 3) if onset is not None else None,
             contacts=len(impulses),
@@ -260,13 +260,13 @@ class Passage:
             time_s=round(now, 3),
         )
 
-    def _impulses(self, now: float) -> list[float]:
-        """Returns the impulse of each contact up to now, from its start to its end [N s]."""
+    def _impulses(self, samples: NDArray[np.float64]) -> list[float]:
+        """Returns the impulse of each contact in some samples, from its start to its end [N s]."""
         ended: list[float] = []
         present: dict[tuple[str, str], float] = {}
         if not self._forces:
             return ended
-        for end, duration in self._table[: self._number_until(now), (END, DURATION)].tolist():
+        for end, duration in samples[:, (END, DURATION)].tolist():
             forces = self._forces.get(end, _NONE)
             if forces or present:
                 ended += [impulse for pair, impulse in present.items() if pair not in forces]
@@ -277,9 +277,9 @@ class Passage:
 def _onset(angles: NDArray[np.float64]) -> int | None:
     """Returns the number of the first sample of the turn that leads to the greatest angle; None if the shoulders never turn."""
     number = int(angles.argmax()) if len(angles) else 0
-    if not len(angles) or angles[number] < TURNED_BY:
+    if not len(angles) or angles[number] < LEAST_TURN:
         return None
-    less = (angles[:number] < TURNED_BY).nonzero()[0]
+    less = (angles[:number] < LEAST_TURN).nonzero()[0]
     return int(less[-1]) + 1 if len(less) else 0
 
 
