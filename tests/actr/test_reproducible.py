@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -11,8 +10,8 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
 from actr3d.trace import Trace
 from tests.helpers.commands import run_command
+from tests.helpers.paths import ROOT
 
-ROOT = Path(__file__).parents[2]
 NOISY = """
 from actr3d.actr import *
 

@@ -19,7 +19,7 @@ from actr3d.runner.facts import program_facts
 from actr3d.trace import Trace
 from tests.helpers.page import becomes_true, open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
-from tests.server.test_html_replay import inside
+from tests.workbench.html_replay.test_html_replay import inside
 from workbench.html_replay.make import write_replay
 from workbench.loader import listing_of
 from workbench.worker.change_menu import change_menu

@@ -14,10 +14,11 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.experiment.specification import specify
 from actr3d.experiment.trial import run_trial
 from tests.helpers.page import choose, drawn, holding, open_tab, shows, until
+from tests.helpers.paths import MODELS
 from tests.helpers.workbench_server import Served, served
 
 CODE = ".code .cm-content"
-MIND = Path(__file__).parents[2] / "models" / "counting.py"
+MIND = MODELS / "counting.py"
 DRAFTS = "Object.keys(localStorage).filter((key) => key.startsWith('actr3d.draft.')).length"
 """Returns how many unsaved texts the browser keeps."""
 

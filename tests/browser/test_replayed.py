@@ -23,7 +23,7 @@ from actr3d.world import Floor, Mannequin, Scene, Wall
 from tests.browser.test_access import problems_of
 from tests.helpers.page import PATIENCE, drawn, until
 from tests.helpers.workbench_server import served
-from tests.server.test_html_replay import ZOO, Waiting
+from tests.workbench.html_replay.test_html_replay import ZOO, Waiting
 from workbench.backdrop import Shades
 from workbench.html_replay import make
 from workbench.html_replay.shapes import Shapes

@@ -18,6 +18,7 @@ from playwright.sync_api import Browser, FrameLocator, Page, expect
 
 from tests.browser.test_access import AXE, LOOK, RUN_AXE
 from tests.helpers.page import PART, PATIENCE, shows
+from tests.helpers.paths import MODELS
 from workbench.notebook import widget
 
 KERNEL = """
@@ -54,7 +55,7 @@ class Kernel:
     """A process that runs cells."""
 
     def __init__(self) -> None:
-        models = str(Path(__file__).parents[2] / "models")
+        models = str(MODELS)
         command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {models!r})\n{KERNEL}"]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.page = self._answer()
@@ -157,7 +158,7 @@ def test_a_page_that_is_late_is_shown_as_soon_as_it_is_there(browser: Browser) -
 def test_a_recording_in_a_notebook_says_that_it_was_changed_and_asks_before_more_is_lost(
     browser: Browser, kernel: Kernel, notebook: str, tmp_path: Path
 ) -> None:
-    model, path = Path(__file__).parents[2] / "models" / "counting.py", tmp_path / "run.sqlite"
+    model, path = MODELS / "counting.py", tmp_path / "run.sqlite"
     subprocess.run([Path(sys.executable).with_name("actr3d"), "run", str(model), "--record", str(path)], check=True, capture_output=True)
     kernel.page = kernel.cell(f"dict(__import__('actr3d.recording').recording.Recorded({str(path)!r}).show(trust=True).page)")
     page = opened(browser, notebook)

@@ -22,8 +22,8 @@ from pathlib import Path
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.cli import main
+from tests.helpers.paths import ROOT
 
-ROOT = Path(__file__).parents[2]
 PAGES = (*sorted(ROOT.glob("*.md")), ROOT / "models" / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
 FENCE = re.compile(r"^( *)```(\w+)?([^\n]*)\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
 END_OF_BLOCK = "\N{SYMBOL FOR RECORD SEPARATOR}"

@@ -7,7 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.helpers.paths import ROOT
+
 SITE = ROOT / "build" / "site"
 SOURCES = ("docs", "actr3d", "models", "workbench", "static", "mkdocs.yml", "CHANGELOG.md")
 """Folders and files that the manual is made of."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import httpx
 
-MODELS = Path(__file__).parents[2] / "models"
+from tests.helpers.paths import MODELS
 
 
 class Served:

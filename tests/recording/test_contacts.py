@@ -22,7 +22,7 @@ from actr3d.world.contacts import Touch
 from tests.helpers.recording_forgery import forge
 from tests.helpers.replays import verdict
 from tests.helpers.walkers import STRUCK
-from tests.world.test_sensors import Crate
+from tests.world.sensors.test_sensors import Crate
 from workbench.csv_files import write_states_csv
 
 TICKS = 400

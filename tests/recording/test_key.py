@@ -14,8 +14,6 @@ from actr3d.recording.key import SIZE, key_file, make_key, own_key
 from tests.helpers.recording_forgery import Change, change, forge
 from tests.helpers.walkers import driving
 
-TESTS = Path(__file__).parents[1]
-
 
 @pytest.fixture(autouse=True)
 def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

@@ -24,9 +24,9 @@ from actr3d.recording.schema import versions
 from actr3d.runner.replay import replay
 from actr3d.trace import TraceEvent
 from tests.helpers.commands import run_command
+from tests.helpers.paths import TESTS
 from tests.helpers.walkers import driving
 
-TESTS = Path(__file__).parents[1]
 RUN = """
 import sys
 sys.path.insert(0, {tests!r})

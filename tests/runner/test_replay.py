@@ -23,11 +23,11 @@ from actr3d.runner.replay import replay
 from actr3d.runner.run import run_model
 from actr3d.runner.verdict import Verdict
 from actr3d.trace import Trace
+from tests.helpers.paths import ROOT
 from tests.helpers.recording_forgery import forge
 from tests.helpers.replays import verdict
 from tests.helpers.walkers import driving
 
-ROOT = Path(__file__).parents[2]
 BUILT = """
 from dataclasses import dataclass
 from actr3d.actr import *

@@ -13,10 +13,10 @@ import pytest
 
 from actr3d.actr.loading import load_text
 from tests.helpers.commands import run_command
+from tests.helpers.paths import ROOT
 from tests.helpers.sgoms_agents import HEAD, cooking, fired, level_events
 from tests.helpers.small_agents import near
 
-ROOT = Path(__file__).parents[2]
 TIDY = """
 class Agent(SGOMS):
     tidy = Situated(until="dishes:clean floor:clean", wash="dishes:dirty", sweep="floor:dirty")

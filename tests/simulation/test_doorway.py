@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-FILE = Path(__file__).parents[2] / "models" / "doorway.py"
+from tests.helpers.paths import MODELS
+
+FILE = MODELS / "doorway.py"
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Any
 
 import pytest
@@ -24,9 +23,10 @@ from actr3d.runner.traceback_report import traceback_report
 from actr3d.simulation import BodyPort, Command, Simulation
 from actr3d.trace import Trace
 from actr3d.world import Floor, ImportedBody, Mannequin, Scene, Wall, World
+from tests.helpers.paths import MODELS
 from tests.helpers.walkers import digest, driving
 
-DOORWAY = Path(__file__).parents[2] / "models" / "doorway.py"
+DOORWAY = MODELS / "doorway.py"
 CLOCK = "from actr3d.actr import *\nclass Clock(Model):\n    def start(self):\n        while True:\n            yield 0.25\n"
 
 
