@@ -144,9 +144,9 @@ def _complain_of_output(error: OSError) -> int:
 
 def replay_command(options: argparse.Namespace) -> int:
     """Replays a recording and compares every byte: returns 0 if all are equal, 1 if not, 2 if that cannot be determined."""
-    from actr3d.runner.verdict import UNKNOWN, verdict_of
+    from actr3d.runner.replay_process import UNKNOWN, replay_in_process
 
-    verdict = verdict_of(options.file, trust=options.trust, any_version=options.any_version)
+    verdict = replay_in_process(options.file, trust=options.trust, any_version=options.any_version)
     out = sys.stderr if verdict.code == UNKNOWN else sys.stdout
     encoding = out.encoding or "utf-8"  # a stream in memory has no encoding
     out.write(verdict.text.encode(encoding, "backslashreplace").decode(encoding))

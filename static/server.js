@@ -255,7 +255,7 @@ function update() {
 export const heldBack = new Set();
 
 /** Sends a command or a question; returns its result, or throws an Error with the reason, with `loses` if only because something would be lost. */
-export function say(what) {
+export function request(what) {
   return new Promise((resolve, reject) => {
     if (shown === null || socket?.readyState !== WebSocket.OPEN) {
       reject(new Error(shown === null ? "no run is shown" : "there is no connection to the workbench"));
@@ -269,6 +269,6 @@ export function say(what) {
 }
 
 /** Sends a command whose result does not matter; shows errors among the messages, unless the page shows another run by now. */
-export function order(what) {
-  return say(what).catch((error) => isLeft(error) || complain(error.message));
+export function sendCommand(what) {
+  return request(what).catch((error) => isLeft(error) || complain(error.message));
 }

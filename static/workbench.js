@@ -4,7 +4,7 @@ import { html, useEffect } from "./vendor/preact.js";
 import { Bar } from "./bar/bar.js";
 import { Clock } from "./bar/clock.js";
 import { begin, listModels } from "./bar/models.js";
-import { RecordingBanner } from "./bar/recorded.js";
+import { RecordingBanner } from "./bar/recording_banner.js";
 import { StatusLine } from "./bar/status.js";
 import { Transport } from "./bar/transport.js";
 import "./changes/undo.js";

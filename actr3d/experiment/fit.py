@@ -44,7 +44,7 @@ from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.trial_measures import known_measures
 from actr3d.runner.cli_options import read_settings
 
-Shown = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
+ProgressBar = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
 """Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
 
 NARROWEST = 1e-4
@@ -243,7 +243,7 @@ class Fit:
         *,
         options: Mapping[str, Any] | None = None,
         seed: int = 1,
-        progress: Shown = lambda _what, _total: nullcontext(lambda _: None),
+        progress: ProgressBar = lambda _what, _total: nullcontext(lambda _: None),
         evaluated: Callable[[float], object] = lambda _rmse: None,
     ) -> None:
         self._design, self._ranges, self._folder, self._open_cluster = design, tuple(ranges), folder, open_cluster

@@ -5,7 +5,7 @@ import { noChange } from "../changes/changes.js";
 import { computed, html, signal } from "../vendor/preact.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { session, state } from "../store.js";
-import { orderChange } from "./branch.js";
+import { sendChange } from "./branch.js";
 
 const MOVES = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", "PageUp", "PageDown"]; // keys that move a slider
 
@@ -26,7 +26,7 @@ function widthOf(name) {
   if (!known.has(name)) {
     const reported = () => 100 * (state.value?.apertures[name] ?? 0);
     const command = (cm) => ({ type: "command", word: "aperture", values: [cm / 100], named: { name } });
-    known.set(name, optimistic(reported, command, orderChange));
+    known.set(name, optimistic(reported, command, sendChange));
   }
   return known.get(name);
 }

@@ -4,7 +4,7 @@ import { html, signal, useEffect } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
-import { isLeft, say } from "../server.js";
+import { isLeft, request } from "../server.js";
 import { complain, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
 import { runTimeText } from "../timeline/seek.js";
@@ -14,18 +14,18 @@ import { embedded } from "../windows.js";
  * throws an Error with the reason if it cannot be. */
 export async function change(what) {
   try {
-    await say(what);
+    await request(what);
   } catch (error) {
     if (!error.loses) throw error;
     const text = `${error.message[0].toUpperCase()}${error.message.slice(1)}.`;
     if (!(await confirmed("Change the past?", text, "Change it anyway"))) return false;
-    await say({ ...what, drop: true });
+    await request({ ...what, drop: true });
   }
   return true;
 }
 
 /** Does the same, but shows an error among the messages. */
-export function orderChange(what) {
+export function sendChange(what) {
   return change(what).catch((error) => isLeft(error) || complain(error.message));
 }
 

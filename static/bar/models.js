@@ -4,7 +4,7 @@ import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preac
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
 import { exactTime, TIMES, timeText } from "../parts/units.js";
-import { AGAIN, call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
+import { AGAIN, call, connect, request, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
@@ -149,7 +149,7 @@ followWindows(showSession);
 /** Runs a model from its start with the current text of its file; throws an Error with the reason if it fails. */
 export async function runModel(path) {
   if (session.value?.model === path && session.value.recorded === null && connected.value) {
-    await say({ type: "restart", run: true });
+    await request({ type: "restart", run: true });
     return;
   }
   note(path);

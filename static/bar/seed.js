@@ -1,7 +1,7 @@
 // The seed of the run, as a field: Enter runs the model from its start with the entered seed.
 
 import { html, useSignal } from "../vendor/preact.js";
-import { order } from "../server.js";
+import { sendCommand } from "../server.js";
 import { session } from "../store.js";
 
 const MAX_SEED = 2n ** 63n - 1n;
@@ -29,7 +29,7 @@ export function SeedField() {
     const wanted = event.currentTarget.value;
     draft.value = { of, text: wanted, submitted: true };
     if (seedProblem(wanted) !== null) return;
-    order({ type: "restart", seed: wanted.trim() });
+    sendCommand({ type: "restart", seed: wanted.trim() });
     event.currentTarget.blur();
   }
   return html`<label class="seed-field ${mine && text !== known ? "waits" : ""}" title="The seed of the run. Enter restarts with this seed">

@@ -7,11 +7,11 @@ import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { isThere } from "../needs.js";
-import { order, say } from "../server.js";
+import { request, sendCommand } from "../server.js";
 import { chooseRecording } from "./models.js";
 import { isOver, isRestarting, runStatus } from "../run_status.js";
 import { alive, complain, running, session, state } from "../store.js";
-import { orderThere } from "../timeline/seek.js";
+import { sendCommandThere } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
 import { bindFaster, speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
@@ -27,25 +27,25 @@ function isDone() {
 
 /** Runs or pauses; restarts a run that is over. */
 function toggle() {
-  if (isRestarting.value) say({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
-  else if (running.value) order({ type: "pause" });
+  if (isRestarting.value) request({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
+  else if (running.value) sendCommand({ type: "pause" });
   else if (isDone() && session.value.recorded !== null) runAgain();
-  else if (isDone()) order({ type: "restart", run: true });
-  else orderThere({ type: "run" });
+  else if (isDone()) sendCommand({ type: "restart", run: true });
+  else sendCommandThere({ type: "run" });
 }
 
 /** Runs a recording from its start, as it was recorded; a new run would use the model's current text. One that was stopped is opened again. */
 async function runAgain() {
   const { alive: lives, recorded } = session.value;
   if (!lives) return chooseRecording(recorded, { run: true }).catch((error) => complain(error.message));
-  await order({ type: "seek", time: 0 });
-  return order({ type: "run" });
+  await sendCommand({ type: "seek", time: 0 });
+  return sendCommand({ type: "run" });
 }
 
 const BUTTONS = [
-  { id: "back", text: "Step back by one tick", key: "ArrowLeft", what: { type: "back" }, say: orderThere },
-  { id: "step", text: "Step by one tick", key: "ArrowRight", what: { type: "step" }, say: orderThere },
-  { id: "cycle", text: "Step until the next production fires", key: "c", what: { type: "cycle" }, say: orderThere },
+  { id: "back", text: "Step back by one tick", key: "ArrowLeft", what: { type: "back" }, send: sendCommandThere },
+  { id: "step", text: "Step by one tick", key: "ArrowRight", what: { type: "step" }, send: sendCommandThere },
+  { id: "cycle", text: "Step until the next production fires", key: "c", what: { type: "cycle" }, send: sendCommandThere },
   { id: "restart", text: "Restart with the same seed", key: "r", what: { type: "restart" }, needs: "models folder" },
   { id: "new-seed", icon: "seed", text: "Restart with a new seed", key: "Shift+r", what: { type: "restart", new_seed: true }, needs: "models folder" },
   { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" }, needs: "models folder" },
@@ -77,7 +77,7 @@ function registered(id, text, key, work, needs = null) {
 }
 
 const toggling = registered("run", "Run or pause; in the past, continue from here", " ", toggle);
-const byButton = new Map(BUTTONS.map(({ id, text, key, what, say = order, needs }) => [id, registered(id, text, key, () => say(what), needs)]));
+const byButton = new Map(BUTTONS.map(({ id, text, key, what, send = sendCommand, needs }) => [id, registered(id, text, key, () => send(what), needs)]));
 const until = registered("until", "Run until …", "u", runUntil);
 const faster = registeredSpeed("Faster", "+", 1, SPEEDS.length - 1);
 const slower = registeredSpeed("Slower", "-", -1, 0);

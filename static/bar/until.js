@@ -8,7 +8,7 @@ import { agentsOf, nameIn } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
 import { session, state } from "../store.js";
-import { sayThere } from "../timeline/seek.js";
+import { requestThere } from "../timeline/seek.js";
 
 const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
 const kind = signal("time");
@@ -124,7 +124,7 @@ export async function runUntil() {
     problem.value = missing() || null;
     if (problem.value) return false;
     try {
-      await sayThere(wanted());
+      await requestThere(wanted());
     } catch (error) {
       if (!isLeft(error) && !closed) problem.value = error.message;
       return isLeft(error);

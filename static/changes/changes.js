@@ -10,7 +10,7 @@ import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
 import { isOver, runStatus } from "../run_status.js";
-import { say } from "../server.js";
+import { request } from "../server.js";
 import { alive, complain, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
@@ -130,7 +130,7 @@ export async function askAndMake(one, given = {}) {
   let closed = false;
   async function choose() {
     const named = { ...given, ...Object.fromEntries(fields.flatMap(({ name }) => (choices[name].length ? [[name, values[name]]] : []))) };
-    const found = await say({ type: "present", word: one.word, named }).catch(() => ({})); // the form can do without
+    const found = await request({ type: "present", word: one.word, named }).catch(() => ({})); // the form can do without
     const before = known.value;
     known.value = Object.fromEntries(fields.flatMap((field) => (field.name in found ? [[field.name, { value: found[field.name], text: textOf(field, found[field.name]) }]] : [])));
     for (const [name, { text }] of Object.entries(known.value)) {

@@ -2,7 +2,7 @@
 
 import { computed, html } from "../vendor/preact.js";
 import { optimistic } from "../parts/optimistic_value.js";
-import { order } from "../server.js";
+import { sendCommand } from "../server.js";
 import { session, state } from "../store.js";
 
 const list = optimistic(
@@ -31,7 +31,7 @@ export function HeldNote() {
   return html`<p class="held" role="status">
     <span>Paused at the breakpoint on <b class="mono">${name}</b></span>
     <span class="stretch"></span>
-    <button onClick=${() => order({ type: "run" })}>Go on</button>
+    <button onClick=${() => sendCommand({ type: "run" })}>Go on</button>
     <button onClick=${() => toggleBreakpoint(name)}>Remove it</button>
   </p>`;
 }

@@ -1,7 +1,7 @@
 // The model's output, line by line with the numbers of its events: kept completely, although the list of events drops the oldest.
 
 import { signal } from "../vendor/preact.js";
-import { say } from "../server.js";
+import { request } from "../server.js";
 import { alive, listeners, shownRun, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
@@ -88,7 +88,7 @@ export async function fillGaps() {
   asking = true;
   const mine = of;
   try {
-    const answer = await say({ type: "events", first: from, most: Math.min(AT_ONCE, until - from), kinds: ["output"] });
+    const answer = await request({ type: "events", first: from, most: Math.min(AT_ONCE, until - from), kinds: ["output"] });
     const gap = gaps[0];
     if (mine !== of || gap?.[0] !== from) return;
     const found = answer.events.map(([, , , data], n) => ({ number: answer.numbers[n], text: String(data?.text ?? "") }));

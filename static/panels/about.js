@@ -5,7 +5,7 @@ import { useDescription } from "../inspector/description.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { openAt } from "../parts/place.js";
-import { order } from "../server.js";
+import { sendCommand } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { session } from "../store.js";
 
@@ -14,7 +14,7 @@ const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote",
 
 /** Runs the model from its start with these parameter values. */
 function attempt(settings) {
-  order({ type: "restart", settings, run: true });
+  sendCommand({ type: "restart", settings, run: true });
 }
 
 /** Draws a node: a text, or an element with its children. All content is shown as text. */

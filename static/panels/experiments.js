@@ -4,8 +4,8 @@ import { html, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
 import { experiments, followExperiments, isRunning, listExperiments, part, problem, showExperiment, shown, total } from "../experiments/list.js";
-import { NewExperiment } from "../experiments/new.js";
-import { Experiment } from "../experiments/one.js";
+import { NewExperiment } from "../experiments/new_experiment.js";
+import { Experiment } from "../experiments/experiment.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
 
 /** What a row says below the state: what is made of the experiment now, how long it still takes, or what failed. */

@@ -11,7 +11,7 @@ import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { Button } from "../parts/button.js";
 import { valueText } from "../parts/chunk.js";
 import { Inline } from "../parts/prose.js";
-import { call, isLeft, order } from "../server.js";
+import { call, isLeft, sendCommand } from "../server.js";
 import { isOver, runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
 
@@ -128,7 +128,7 @@ function restart(event) {
     if (present.value.get(name)?.known && value !== present.value.get(name).default) settings[name] = value;
   }
   const wanted = seed.value.trim();
-  order({ type: "restart", settings, run: event.submitter?.value === "run", ...(wanted ? { seed: wanted } : {}) });
+  sendCommand({ type: "restart", settings, run: event.submitter?.value === "run", ...(wanted ? { seed: wanted } : {}) });
 }
 
 /** Presses «Run with these» for Mod+Enter. */

@@ -4,7 +4,7 @@ import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
-import { Chosen } from "../runs/chosen.js";
+import { SelectedRuns } from "../runs/selected_runs.js";
 import { goToTab } from "../open_tab.js";
 import { addFiles, chooseFiles, deleteRuns, openRun } from "../runs/actions.js";
 import { followRuns, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
@@ -74,7 +74,7 @@ function Runs() {
     ${warning.value ? html`<p class="problem bad" role="alert">${warning.value}</p>` : null}
     ${body(all, ordered, search)}
     ${idle > 0 ? html`<p class="left-out">${counted(idle, "recording")} without a step ${idle === 1 ? "is" : "are"} not listed <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
-    <${Chosen} list=${picked} />
+    <${SelectedRuns} list=${picked} />
   </div>`;
 }
 

@@ -1,7 +1,7 @@
 // Questions to a run, sent again whenever the run is at another moment.
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
-import { say } from "../server.js";
+import { request } from "../server.js";
 import { alive, moment, running, shownRun, state } from "../store.js";
 
 /** The interval between two questions while the run is active [ms]: answering slows the run down. */
@@ -36,7 +36,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       const run = shownRun.peek();
       const about = { of: run, key, time: state.peek()?.time ?? null };
       setResult((before) => ({ ...before, waiting: true }));
-      const news = await say(question).then(
+      const news = await request(question).then(
         (answer) => ({ answer, error: null, ...about }),
         (error) => ({ answer: null, error: error.message, ...about }),
       );

@@ -1,7 +1,7 @@
 // A value that the user sets and the run confirms, such as a speed: the latest input is shown until the run has accepted it.
 
 import { computed, signal } from "../vendor/preact.js";
-import { heldBack, order } from "../server.js";
+import { heldBack, sendCommand } from "../server.js";
 import { session } from "../store.js";
 
 /**
@@ -12,33 +12,33 @@ import { session } from "../store.js";
  * @param command Returns the command that sets a value.
  * @param send Sends it, and shows errors.
  */
-export function optimistic(reported, command, send = order) {
+export function optimistic(reported, command, send = sendCommand) {
   const wanted = signal(null); // {value}; null if the run has confirmed the value
-  let [said, answer] = [null, null]; // the last value that was sent, and the promise of its answer
+  let [sent, answer] = [null, null]; // the last value that was sent, and the promise of its answer
 
-  function sayNewest() {
-    heldBack.delete(sayNewest);
-    if (said === wanted.peek()) return;
-    said = wanted.peek();
-    answer = send(command(said.value));
+  function sendNewest() {
+    heldBack.delete(sendNewest);
+    if (sent === wanted.peek()) return;
+    sent = wanted.peek();
+    answer = send(command(sent.value));
   }
 
-  async function say() {
+  async function sendWanted() {
     const { id } = session.peek() ?? {};
-    for (let last = null; id === session.peek()?.id && (last !== answer || said !== wanted.peek()); ) {
-      sayNewest();
+    for (let last = null; id === session.peek()?.id && (last !== answer || sent !== wanted.peek()); ) {
+      sendNewest();
       last = answer;
       await last;
     }
-    heldBack.delete(sayNewest);
-    wanted.value = said = answer = null;
+    heldBack.delete(sendNewest);
+    wanted.value = sent = answer = null;
   }
 
   function set(value) {
-    const saying = wanted.peek() !== null;
+    const sending = wanted.peek() !== null;
     wanted.value = { value };
-    if (saying) heldBack.add(sayNewest);
-    else say();
+    if (sending) heldBack.add(sendNewest);
+    else sendWanted();
   }
 
   return { value: computed(() => (wanted.value === null ? reported() : wanted.value.value)), set };

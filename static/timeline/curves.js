@@ -4,7 +4,7 @@
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
-import { isLeft, say } from "../server.js";
+import { isLeft, request } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { exactTime } from "../parts/units.js";
@@ -366,7 +366,7 @@ async function askOnce() {
   if (!stretch) return false;
   Object.assign(stretch, { first: exactTime(Math.max(0, stretch.from - near())), last: exactTime(stretch.to + near()) });
   const seen = !events ? null : isNew ? 0 : ofEvents.peek().length;
-  const answer = await say({ type: "curves", names: list, first: stretch.first, last: stretch.last, most: stretch.most, seen });
+  const answer = await request({ type: "curves", names: list, first: stretch.first, last: stretch.last, most: stretch.most, seen });
   if (of !== asked || !asked.startsWith(`${way.peek()} `)) return true;
   const [bodies, more] = [true, false].map((isBody) => answer.names.filter(({ shape }) => (shape === "line") === isBody));
   if (isNew || bodies.length !== ofBodies.peek().length) ofBodies.value = bodies; // another world was added

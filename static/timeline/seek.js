@@ -2,7 +2,7 @@
 
 import { computed, signal } from "../vendor/preact.js";
 import { exactTime, timeText } from "../parts/units.js";
-import { order, say } from "../server.js";
+import { request, sendCommand } from "../server.js";
 import { alive, session, shownRun, state } from "../store.js";
 
 /** The time to which the user is going [s]; null when the run is there. */
@@ -48,25 +48,25 @@ async function go() {
   said = null;
   while (wanted.peek() !== null && wanted.peek() !== said && whose === shownRun.peek()) {
     said = wanted.peek();
-    await order({ type: "seek", time: said }); // afterwards, the state shows the run there too
+    await sendCommand({ type: "seek", time: said }); // afterwards, the state shows the run there too
   }
   going = false;
   wanted.value = null;
 }
 
 /** Sends a command for the time to which the user has gone, although the run may still be on its way. */
-export function orderThere(what) {
+export function sendCommandThere(what) {
   goThere();
-  return order(what);
+  return sendCommand(what);
 }
 
-/** Does the same, but returns the result, as `say` does. */
-export function sayThere(what) {
+/** Does the same, but returns the result, as `request` does. */
+export function requestThere(what) {
   goThere();
-  return say(what);
+  return request(what);
 }
 
 function goThere() {
-  if (wanted.peek() !== null && wanted.peek() !== said) order({ type: "seek", time: wanted.peek() });
+  if (wanted.peek() !== null && wanted.peek() !== said) sendCommand({ type: "seek", time: wanted.peek() });
   wanted.value = null;
 }

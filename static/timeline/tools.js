@@ -9,7 +9,7 @@ import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { lastEvent, runStatus } from "../run_status.js";
-import { order } from "../server.js";
+import { sendCommand } from "../server.js";
 import { alive, hasScene, running, session } from "../store.js";
 import { reach } from "./branches.js";
 import { CurveChoice } from "./choice.js";
@@ -84,7 +84,7 @@ function Going() {
   const past = inThePast.value && !running.value;
   const ready = alive.value && past && wanted.value === null;
   return html`<div class="timeline-going">
-    <${Button} disabled=${!ready} title="Run from this moment. It repeats what happened; a change here begins a branch." onClick=${() => order({ type: "run" })}>
+    <${Button} disabled=${!ready} title="Run from this moment. It repeats what happened; a change here begins a branch." onClick=${() => sendCommand({ type: "run" })}>
       <${Icon} name="run" /><span>Continue from here</span>
     <//>
     <${Button} disabled=${!alive.value || !past} title=${buttonTitle(toNewest, "Go to the newest moment of the run")} onClick=${() => run(toNewest)}>

@@ -2,9 +2,9 @@
 // the 3D view has drawn that moment, however long it takes.
 
 import { exactTime } from "../parts/units.js";
-import { order, say } from "../server.js";
+import { request, sendCommand } from "../server.js";
 import { listeners, session, state, way } from "../store.js";
-import { furthest, sayThere } from "../timeline/seek.js";
+import { furthest, requestThere } from "../timeline/seek.js";
 import { encoderFor, VideoFile } from "./encoder.js";
 
 export const RATE = 30; // pictures a second
@@ -89,7 +89,7 @@ class Maker {
     this.check();
     this.expected = [this.expected[1], time];
     try {
-      await say({ type: "seek", time });
+      await request({ type: "seek", time });
     } catch (error) {
       await nextFrame();
       this.check(); // a run that was restarted has not been there: the reason is the restart
@@ -154,10 +154,10 @@ class Maker {
  * @param {(count: number) => void} progress Called with the number of pictures made.
  */
 export async function makeVideo(stretch, stopped, progress) {
-  await sayThere({ type: "pause" });
+  await requestThere({ type: "pause" });
   stopped.throwIfAborted();
   const maker = new Maker(stretch, stopped);
-  const goBack = () => way.peek() === maker.way && order({ type: "seek", time: maker.before });
+  const goBack = () => way.peek() === maker.way && sendCommand({ type: "seek", time: maker.before });
   addEventListener("pagehide", goBack);
   try {
     const made = await maker.make(progress);

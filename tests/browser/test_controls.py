@@ -511,7 +511,7 @@ def renamed(source: str) -> str:
 
 AT_ONCE = """async () => {
   const { optimistic } = await part("parts/optimistic_value.js");
-  const { order } = await part("server.js");
+  const { sendCommand } = await part("server.js");
   const { state } = await part("store.js");
   const { send } = WebSocket.prototype;
   const sent = [];
@@ -523,7 +523,7 @@ AT_ONCE = """async () => {
   const shown = () => Math.round(100 * state.value.apertures.aperture);
   const width = optimistic(shown, (value) => ({ type: "command", word: "aperture", values: [value / 100], named: { name: "aperture" } }));
   for (const value of [60, 70, 80]) width.set(value);
-  order({ type: "step" });
+  sendCommand({ type: "step" });
   const before = [...sent];
   for (let n = 0; n < 1000 && !(shown() === 80 && state.value.tick === 1); n += 1) await new Promise((done) => setTimeout(done, 10));
   WebSocket.prototype.send = send;

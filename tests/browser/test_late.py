@@ -168,11 +168,11 @@ def test_what_is_asked_of_a_run_is_answered_though_the_run_is_shown_again_meanwh
     shows(page, "#status", "at its start")
     answer = page.evaluate(
         """async () => {
-          const { say, show } = await part("server.js");
+          const { request, show } = await part("server.js");
           const { session } = await part("store.js");
           const answers = [];
           for (let n = 0; n < 5; n += 1) {
-            answers.push(say({ type: "step" }));
+            answers.push(request({ type: "step" }));
             show(session.value.id);
           }
           const late = new Promise((resolve) => setTimeout(resolve, 10_000, "no answer"));

@@ -263,7 +263,7 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
     expect(page).to_have_url(re.compile(r"\?model=counting\.py$"))
 
 
-SAY = """async (message) => void (await (await part("server.js")).say(message))"""
+SAY = """async (message) => void (await (await part("server.js")).request(message))"""
 
 
 def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pages, workbench: Served) -> None:

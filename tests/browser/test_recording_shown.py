@@ -161,7 +161,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     asked = page.get_by_role("dialog")
 
     def order(kind: str, time: float) -> None:
-        page.evaluate("async (said) => (await part('server.js')).order(said)", {"type": kind, "time": time})
+        page.evaluate("async (said) => (await part('server.js')).sendCommand(said)", {"type": kind, "time": time})
         shows(page, "#time", f"t = {time:.2f} s")
 
     def drag(key: str) -> None:
@@ -185,7 +185,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     drag("Home")
     shows(page, "#status", r"paused: changed at 1\.50 s$")  # also without a question
     expect(page.locator("#width")).not_to_have_text(width)
-    page.evaluate("async () => (await part('server.js')).order({ type: 'restart', record: false })")
+    page.evaluate("async () => (await part('server.js')).sendCommand({ type: 'restart', record: false })")
     shows(page, "#status", "at its start")
     width = page.locator("#width").inner_text()
     order("until", 2)

@@ -411,12 +411,12 @@ def test_runs_without_a_body_are_compared_by_what_their_agents_did(pages: Callab
     expect(page.locator("#status")).to_contain_text("at its start")
     runs = page.evaluate(
         """async () => {
-          const { say } = await part("server.js");
+          const { request } = await part("server.js");
           const { alive, session, state } = await part("store.js");
           const made = [];
           for (const seed of [1, 2]) {
             const before = session.value.run;
-            await say({ type: "restart", seed, run: true });
+            await request({ type: "restart", seed, run: true });
             const isOver = () => session.value.run > before && alive.value && state.value.status === "ended";
             while (!isOver()) await new Promise((done) => setTimeout(done, 50));
             made.push(session.value.recording);
@@ -620,7 +620,7 @@ def test_what_differs_is_worded_as_in_trace_and_timeline(page: Page, recordings:
     later = [[950_000, "goal", "buffer", {"chunk": None}], [950_001, "visual", "buffer", {"chunk": None}]]
     assert page.evaluate(worded, [later]) == [[["time [s]", "0.95", "0.950001"], ["source", "goal", "visual"]]]
 
-    say = "async (command) => void (await (await part('server.js')).say(command))"
+    say = "async (command) => void (await (await part('server.js')).request(command))"
     expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     page.evaluate(say, {"type": "until", "time": 0.2})
     expect(page.locator("#status")).to_have_text(re.compile(r"at 0\.2 s"))

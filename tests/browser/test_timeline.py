@@ -79,10 +79,10 @@ def ended(pages: Callable[..., Page]) -> Page:
     shows(page, "#time", "t =")
     page.evaluate(
         """async () => {
-          const { say } = await part("server.js");
+          const { request } = await part("server.js");
           const { session, state } = await part("store.js");
           const before = session.value.run;
-          await say({ type: "restart", seed: 1, run: true });
+          await request({ type: "restart", seed: 1, run: true });
           while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
         }"""
     )
@@ -441,7 +441,7 @@ def test_a_page_that_has_only_the_last_events_fetches_the_earlier_ones_while_the
     assert found["again"] == found["whole"]
 
 
-SEEK = """async (time) => void (await (await part("server.js")).say({ type: "seek", time }))"""
+SEEK = """async (time) => void (await (await part("server.js")).request({ type: "seek", time }))"""
 LATEST = """async (count) => {
   const { events } = await part("store.js");
   const { list, first } = events.value;
@@ -644,10 +644,10 @@ def test_curves_have_every_tick_after_a_restart_and_a_reload(ended: Page) -> Non
     for _ in range(3):
         page.evaluate(
             """async () => {
-              const { say } = await part("server.js");
+              const { request } = await part("server.js");
               const { session, state } = await part("store.js");
               const before = session.value.run;
-              await say({ type: "restart", run: true });
+              await request({ type: "restart", run: true });
               while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
             }"""
         )
@@ -724,7 +724,7 @@ ENDS = """async () => {
   const { lanes } = await part("timeline/record.js");
   const { state } = await part("store.js");
   const fired = [1, 2, 3, 4, 5, 6].map((run) => lanes.lanes.get(`productions ${run === 1 ? "top" : `top#${run}`}`)?.bands.at(-1).to);
-  const { events } = await (await part("server.js")).say({ type: "curves" });
+  const { events } = await (await part("server.js")).request({ type: "curves" });
   const latest = Math.max(...Object.values(events).map(({ times }) => times.at(-1)));
   return { fired, printed: lanes.lanes.get("said").bands.map(({ from }) => from), now: state.value.time, latest };
 }"""
@@ -1108,7 +1108,7 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     becomes_true(page, "async () => (await part('store.js')).state.value?.status === 'ended'")
     curves = page.evaluate(
         """async () => {
-          const { events } = await (await part("server.js")).say({ type: "curves" });
+          const { events } = await (await part("server.js")).request({ type: "curves" });
           return Object.fromEntries(Object.entries(events).map(([name, { values }]) => [name, values.at(-1)]));
         }"""
     )
@@ -1179,7 +1179,7 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
     shows(page, "#status", "at its start")
     page.evaluate(
         """async () => {
-          await (await part("server.js")).say({ type: "until", time: 0.5 });
+          await (await part("server.js")).request({ type: "until", time: 0.5 });
           const { names, plot } = await part("timeline/curves.js");
           while (!names.value.some(({ group }) => group === "joint")) await new Promise((done) => setTimeout(done, 20));
           names.value.filter(({ name }) => name.endsWith("_yaw")).slice(0, 5).forEach(({ name }) => plot(name, true));

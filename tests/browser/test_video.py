@@ -61,7 +61,7 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     page.keyboard.press("Escape")
 
     def order(command: str) -> None:
-        page.evaluate(f"async () => (await part('server.js')).order({command})")
+        page.evaluate(f"async () => (await part('server.js')).sendCommand({command})")
 
     order("{ type: 'step', ticks: 60 }")
     shows(page, "#time", r"t = 0\.60 s")

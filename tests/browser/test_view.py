@@ -259,7 +259,7 @@ def in_the_middle(page: Page, frame: Frame) -> dict[str, Any]:
 def steps(page: Page, frame: Frame, ticks: int) -> None:
     """Runs on for some ticks, and waits until the 3D view shows that."""
     before = frame.evaluate("() => window.scene.shown.body[0]")
-    page.evaluate("async (ticks) => (await part('server.js')).order({ type: 'step', ticks })", ticks)
+    page.evaluate("async (ticks) => (await part('server.js')).sendCommand({ type: 'step', ticks })", ticks)
     until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > before)
 
 
@@ -577,7 +577,7 @@ def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages:
     def to(time: float, how: str = "until") -> Callable[[], None]:
         def act() -> None:
             said = {"type": how, "time": time}
-            page.evaluate("async (said) => (await part('server.js')).order(said)", said)
+            page.evaluate("async (said) => (await part('server.js')).sendCommand(said)", said)
             shows(page, "#time", f"t = {time:.2f} s")
             until(page, lambda: frame.evaluate("() => window.scene.facts.now.moment === window.scene.shown.moment"))
             drawn(page)
@@ -635,7 +635,7 @@ def part_seen(page: Page, frame: Frame, body: str) -> float:
 def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)
-    page.evaluate("async () => (await part('server.js')).order({ type: 'until', time: 4 })")
+    page.evaluate("async () => (await part('server.js')).sendCommand({ type: 'until', time: 4 })")
     shows(page, "#time", "t = 4.00 s")
     until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > 4)
     plain = part_seen(page, frame, "/bodies/walker")

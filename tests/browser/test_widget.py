@@ -171,7 +171,7 @@ def test_a_recording_in_a_notebook_says_that_it_was_changed_and_asks_before_more
         inner.evaluate(f"async (what) => void (await part('{part}')).{function}(what)", what)
 
     def change(time: float) -> None:
-        order("server.js", "order", type="seek", time=time)
+        order("server.js", "sendCommand", type="seek", time=time)
         time_of(frame, f"t = {time:.2f} s")
         order("bar/branch.js", "orderChange", type="command", word="clear_buffer", named={"buffer": "goal"})
 
@@ -181,7 +181,7 @@ def test_a_recording_in_a_notebook_says_that_it_was_changed_and_asks_before_more
     expect(frame.locator(".branched")).to_contain_text(kept)
     expect(frame.locator(".branched")).to_have_attribute("title", re.compile(f"^{kept}\\."))  # in full where it is cut
     expect(frame.get_by_title("Kept as this recording")).to_have_count(0)
-    order("server.js", "order", type="step")
+    order("server.js", "sendCommand", type="step")
     time_of(frame, "t = 0.11 s")
     change(0.05)
     asked = frame.get_by_role("dialog", name="Change the past?")

@@ -180,7 +180,7 @@ def shows(page: Page, where: str, text: str) -> None:
 
 def say(page: Page, **command: Any) -> None:
     """Sends a command to the run that the page shows, and waits for the reply."""
-    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
+    page.evaluate("async (command) => void (await (await part('server.js')).request(command))", command)
 
 
 def until(page: Page, condition: Callable[[], bool]) -> None:

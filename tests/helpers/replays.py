@@ -6,12 +6,12 @@ import json
 import tempfile
 from pathlib import Path
 
-from actr3d.runner.verdict import Verdict, give_verdict
+from actr3d.runner.replay_process import ReplayResult, write_result
 
 
-def verdict(path: Path) -> Verdict:
+def verdict(path: Path) -> ReplayResult:
     """Returns the verdict of the process of `actr3d replay PATH`."""
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder, "verdict")
-        give_verdict(file=str(path), to=str(to), trust=False, any_version=False)
-        return Verdict(**json.loads(to.read_text(encoding="utf-8")))
+        write_result(file=str(path), to=str(to), trust=False, any_version=False)
+        return ReplayResult(**json.loads(to.read_text(encoding="utf-8")))

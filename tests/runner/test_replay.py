@@ -20,8 +20,8 @@ from actr3d.runner.build_check import has_build, problem_of_build
 from actr3d.runner.cli_options import read_settings
 from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.replay import replay
+from actr3d.runner.replay_process import ReplayResult
 from actr3d.runner.run import run_model
-from actr3d.runner.verdict import Verdict
 from actr3d.trace import Trace
 from tests.helpers.paths import ROOT
 from tests.helpers.recording_forgery import forge
@@ -182,7 +182,7 @@ def test_a_program_without_a_world_is_recorded_and_replayed(name: str, tmp_path:
     assert main(["run", str(file), "--record", str(path)]) == 0
     printed = capsys.readouterr().out
     with Recorded(path) as recorded:
-        assert verdict(path) == Verdict(code=0, text=f"every byte agrees: {recorded.event_count:,} events\n")
+        assert verdict(path) == ReplayResult(code=0, text=f"every byte agrees: {recorded.event_count:,} events\n")
         assert recorded.event_count > 20
     assert main(["run", str(file), "--seed", "1"]) == 0
     assert (printed == capsys.readouterr().out) or name == "noisy.py"
@@ -359,7 +359,7 @@ def test_a_replay_that_fails_differs(leave: str, tmp_path: Path, monkeypatch: py
     path = recorded_run(file)
     what = {"1 / 0": "ZeroDivisionError: division by zero", "raise BaseException": "BaseException: "}.get(leave, "SystemExit: 0")
     monkeypatch.setenv("FAIL", "run")
-    assert verdict(path) == Verdict(code=1, text=f"differs: the run failed after 0.09 s ({what})\n")
+    assert verdict(path) == ReplayResult(code=1, text=f"differs: the run failed after 0.09 s ({what})\n")
     monkeypatch.setenv("FAIL", "build")
     report = verdict(path)
     assert report.code == 2
@@ -554,7 +554,7 @@ def test_a_replay_without_the_recorded_failure_differs(tmp_path: Path) -> None:
         file.write_text(text, encoding="utf-8")
         path = recorded_run(file)
         forge(path, "UPDATE facts SET name = 'failed', value = '\"ValueError: no\"' WHERE name = 'ended'")
-        assert verdict(path) == Verdict(code=1, text="differs: the fact 'failed'; recorded: \"ValueError: no\"; now: null\n")
+        assert verdict(path) == ReplayResult(code=1, text="differs: the fact 'failed'; recorded: \"ValueError: no\"; now: null\n")
         path.unlink()
 
 

@@ -18,7 +18,7 @@ from actr3d.world.world import World
 from workbench.backdrop import Outlines, Shades
 from workbench.scene_framing import SceneFraming
 from workbench.viser_server import send_scene_data, start_viser
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 
 
 class Nothing(ACTR):
@@ -90,7 +90,7 @@ def test_the_stage_is_sent_with_the_middle_and_size_of_the_body() -> None:
 
 def test_the_stage_is_that_of_the_agent_s_body_whatever_else_moves() -> None:
     parts = (Floor(), SimpleObject(name="box", position=(-3, 0, 0.2)), Mannequin(name="other", position=(-2, 0)), Mannequin(name="walker"))
-    world = Shown(Simulation(Scene(parts=parts), {"walker": Nothing})).world()
+    world = SimulationDisplay(Simulation(Scene(parts=parts), {"walker": Nothing})).world()
     model: Any = World(Scene(parts=parts)).mj_model
     told = SceneFraming(model, [world["bodies"][name]["root"] for name in world["agents"]]).data([])
     assert told["start"][:2] == pytest.approx([0, 0], abs=1e-6)

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from actr3d.experiment.design import Trial
-from actr3d.experiment.report.beside import beside_experiment, fit_to, matched
+from actr3d.experiment.report.reference_means import fit_to, matched, means_of_experiment
 from actr3d.experiment.report.results import by_number, read_results
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.reports import store_rows
@@ -215,7 +215,7 @@ def test_the_report_compares_the_same_means(tmp_path: Path) -> None:
     for (mine, theirs), order in ((folders, 1), (folders[::-1], -1)):
         tables = [folder / "trials.sqlite" for folder in (mine, theirs)]
         parts = by_number(read_results(mine))
-        beside = beside_experiment(by_number(read_results(theirs)), parts)
+        beside = means_of_experiment(by_number(read_results(theirs)), parts)
         assert beside is not None
         for measure in ("rt", "luck"):
             found = means(*tables, x="n", by=["group"], measure=measure, factors=["n", "m"], defaults=defaults[::order])

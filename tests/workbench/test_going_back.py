@@ -32,7 +32,7 @@ from workbench.page_commands.agents import Events, Explain, MemoryRows
 from workbench.page_commands.bodies import BodyState, Curves, Present, View
 from workbench.protocol import COMMAND
 from workbench.worker.names import Top
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 
 KINDS = tuple(OVERLAYS)
 
@@ -77,7 +77,7 @@ def build() -> Simulation:
 """Looks in other and other ways, feels, holds something and lets go of it."""
 
 
-def asked(shown: Shown) -> Any:
+def asked(shown: SimulationDisplay) -> Any:
     """Returns the part of a run that questions use."""
     simulation = shown.simulation
     tops = [Top(agent) for agent in simulation.agents.values()]
@@ -94,7 +94,7 @@ def asked(shown: Shown) -> Any:
     return SimpleNamespace(trace=trace, tops=lambda: tops, shown=shown, curves=shown.curves, **times)
 
 
-def questions(shown: Shown) -> list[Any]:
+def questions(shown: SimulationDisplay) -> list[Any]:
     """Returns every question that a page can ask of a moment; a new kind of question is to be added here."""
     agents = shown.simulation.agents.values()
     memories = [path_of(part) for mind in agents for part in subtree(mind) if isinstance(part, Memory)]
@@ -108,7 +108,7 @@ def questions(shown: Shown) -> list[Any]:
     return wanted
 
 
-def told(shown: Shown) -> dict[str, Any]:
+def told(shown: SimulationDisplay) -> dict[str, Any]:
     """Returns all that is shown of the present, as JSON by what it is."""
     physics, apertures = shown.scene()
     parts: dict[str, Any] = {}
@@ -122,7 +122,7 @@ def told(shown: Shown) -> dict[str, Any]:
     return {name: json.loads(to_json(value)) for name, value in now.items()} | {"curves": curves_until(shown, shown.simulation.time)}
 
 
-def curves_until(shown: Shown, time: float) -> dict[float, Any]:
+def curves_until(shown: SimulationDisplay, time: float) -> dict[float, Any]:
     """Returns the curves up to a time: what lies ahead may be known or not."""
     answer = json.loads(to_json(Curves(most=5_000).answer(asked(shown))))
     names = sorted(answer["curves"])
@@ -136,12 +136,12 @@ def _plain(value: Any) -> Any:
 
 
 @contextmanager
-def shown_of(source: str, seed: int, **settings: Any) -> Generator[Shown]:
+def shown_of(source: str, seed: int, **settings: Any) -> Generator[SimulationDisplay]:
     """Builds what a text describes, as a worker does."""
     with RunLimits(seed=seed), shared_random(seed), printing_to(ModelOutput(lambda _: None)):
         simulation, _ = Blueprint(source, str(MODELS / "model.py"), MODELS).build(settings)
         simulation.traced()
-        yield Shown(simulation)
+        yield SimulationDisplay(simulation)
 
 
 def go(simulation: Simulation, tick: int) -> None:
@@ -150,7 +150,7 @@ def go(simulation: Simulation, tick: int) -> None:
         pass
 
 
-def check_going_back(shown: Shown, ticks: int, moments: int, random_seed: int) -> None:
+def check_going_back(shown: SimulationDisplay, ticks: int, moments: int, random_seed: int) -> None:
     """Runs a simulation, asks everything at random moments, and again after going there in a random order, by every way there is."""
     chance, simulation = random.Random(random_seed), shown.simulation
     chosen = sorted({0, 1, ticks, *chance.sample(range(ticks), moments)})
@@ -173,7 +173,7 @@ def check_going_back(shown: Shown, ticks: int, moments: int, random_seed: int) -
     seek(shown, before | after, chance)
 
 
-def seek(shown: Shown, known: dict[int, dict[str, Any]], chance: random.Random) -> None:
+def seek(shown: SimulationDisplay, known: dict[int, dict[str, Any]], chance: random.Random) -> None:
     simulation = shown.simulation
     order = [*known]
     for tick in chance.sample(order, len(order)):

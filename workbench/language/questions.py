@@ -17,7 +17,7 @@ from workbench.language.answers import Completion, Definition, Documentation, Ho
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import PythonAnswers
-from workbench.language.same_words import SameWords
+from workbench.language.references import References
 from workbench.language.tokens import line_of
 
 FORMAT_TIME = 5.0
@@ -117,7 +117,7 @@ class Assistant:
         return self._python.define(ExplicitText(model), path, at)
 
     def _rename(self, model: ModelText, path: str, at: int, new: str) -> Renaming:
-        words = SameWords(model, self._python, path)
+        words = References(model, self._python, path)
         found = words.uses(at)
         allowed = re.fullmatch(r"[\w.]+", new) if found.what == "slot" else new.isidentifier() and not keyword.iskeyword(new)
         if not new:  # the page asks what will be renamed
@@ -131,7 +131,7 @@ class Assistant:
                 self._check_meaning(words, path, found, at, new)
         return found
 
-    def _check_meaning(self, words: SameWords, path: str, found: Renaming, at: int, new: str) -> None:
+    def _check_meaning(self, words: References, path: str, found: Renaming, at: int, new: str) -> None:
         """Checks that a new name in the code hides nothing, and that no other name means the same once it is written.
 
         Raises:
@@ -150,7 +150,7 @@ class Assistant:
             return
         text, starts = _renamed(words.model.text, found, new)
         here = max((start for old, start in zip(found.starts, starts, strict=True) if old <= at + 1), default=starts[0])
-        same, _ = SameWords(ModelText(text), self._python, path).places(new, here)
+        same, _ = References(ModelText(text), self._python, path).places(new, here)
         different = same ^ set(starts)
         if different:
             line = line_of(text, min(different))

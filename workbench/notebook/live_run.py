@@ -19,7 +19,7 @@ from workbench.worker.channel import Channel
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.messages import Facts, Over
 from workbench.worker.run_controller import Leaving, RunController
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 from workbench.worker.simulation_run import ENDINGS, SimulationRun
 
 BY_CELL = "by a cell"
@@ -77,7 +77,7 @@ class LiveRun(SimulationRun):
         simulation.event_log.raise_level("all", keep=True)
         if simulation.timeline.begun:
             simulation.seek(0)
-        self._shown = Shown(simulation)
+        self._shown = SimulationDisplay(simulation)
         for moment in (furthest, time):
             if simulation.time != moment:
                 simulation.seek(moment)

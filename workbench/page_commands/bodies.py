@@ -12,14 +12,14 @@ from workbench.page_commands.command import LONGEST_TEXT, Name, PlainValue, Ques
 if TYPE_CHECKING:
     from actr3d.world.body import Body
     from workbench.worker.controlled_run import ControlledRun
-    from workbench.worker.shown import Shown
+    from workbench.worker.simulation_display import SimulationDisplay
 
 
 CurveName = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT)]
 """The name of a curve, which may contain a chunk."""
 
 
-def _found(run: ControlledRun, name: str | None) -> tuple[Shown, Body]:
+def _found(run: ControlledRun, name: str | None) -> tuple[SimulationDisplay, Body]:
     """Returns what is shown of a simulation, and one of its bodies; the first without a name."""
     shown = run.shown
     if shown is None or not shown.simulation.world.bodies:

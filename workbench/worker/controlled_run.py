@@ -17,7 +17,7 @@ from workbench.event_curves import EventCurves
 from workbench.time_text import time_text
 from workbench.worker.known_run import KnownRun
 from workbench.worker.names import Names, Top
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 from workbench.worker.stop_conditions import Touches
 
 
@@ -93,7 +93,7 @@ class ControlledRun(ABC):
 
     @property
     @abstractmethod
-    def shown(self) -> Shown | None:
+    def shown(self) -> SimulationDisplay | None:
         """What is shown of the current simulation; for a program, of the one that has ticked last, if any."""
 
     @abstractmethod

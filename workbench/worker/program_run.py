@@ -45,7 +45,7 @@ from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import ENDED, Facts
 from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.run_controller import Leaving, RunController
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 from workbench.worker.state_history import MAX_SIMULATIONS, Past
 
 PERIOD = 10_000
@@ -176,7 +176,7 @@ class ProgramRun(ControlledRun):
         """Whether the server knows that the run has begun."""
         self._begun = 0
         """The number of simulations that have begun."""
-        self._simulations: dict[int, tuple[Shown, int]] = {}
+        self._simulations: dict[int, tuple[SimulationDisplay, int]] = {}
         """Those nearest to the present by number, and when each began [us]. They are kept when the program is run again: the stored past of
         a simulation is passed on to the one that begins in its place."""
         self._openings: dict[int, dict[str, float]] = {}
@@ -185,11 +185,11 @@ class ProgramRun(ControlledRun):
         """The numbers of the latest runs, these, and their models."""
         self._runs = 0
         """How many runs there have been."""
-        self._shown: Shown | None = None
+        self._shown: SimulationDisplay | None = None
         """The simulation that has ticked last."""
         self._scene: tuple[bytes | None, bytes, bytes] = (None, b"null", b"[]")
         """The compiled scene, the world, and the widths at the start of simulations that the server knows."""
-        self._scene_of: Shown | None = None
+        self._scene_of: SimulationDisplay | None = None
         """The simulation that was shown last."""
         self._ahead: dict[int, Past] = {}
         """The recorded states of simulations that have not begun yet in this repetition of a recording, by their number among all runs."""
@@ -251,7 +251,7 @@ class ProgramRun(ControlledRun):
             self._furthest = max(self._furthest, known_run.time)
             self._controller.repeat_recorded(known_run)
 
-    def _take_ahead(self, shown: Shown) -> None:
+    def _take_ahead(self, shown: SimulationDisplay) -> None:
         """Gives a simulation what is recorded of its past and future."""
         number = shown.simulation.event_log.number
         if number is not None:
@@ -558,7 +558,7 @@ class ProgramRun(ControlledRun):
                 simulation.traced()
             self._begun += 1
             earlier = self._simulations.get(self._begun)
-            self._shown = shown = Shown(simulation, None if earlier is None else earlier[0].kept)
+            self._shown = shown = SimulationDisplay(simulation, None if earlier is None else earlier[0].kept)
             self._take_ahead(shown)
             self._simulations[self._begun] = shown, self._clock
             self._openings[simulation.event_log.number or 1] = shown.openings
@@ -601,7 +601,7 @@ class ProgramRun(ControlledRun):
         return self._run_times[run_of(source)].program_at(time)
 
     @property
-    def shown(self) -> Shown | None:
+    def shown(self) -> SimulationDisplay | None:
         return self._shown
 
     def live_parameter(self, name: str, value: Any) -> LiveCommand:

@@ -35,7 +35,7 @@ from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, Top, names_of
 from workbench.worker.run_controller import RunController
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 
 BLOCK = 0.008
 """How long the run continues before it checks for commands of users [s], approximately."""
@@ -68,7 +68,7 @@ class SimulationRun(ControlledRun):
         self._known_run: KnownRun | None = None
         """The recorded run that is repeated."""
         self._simulation: Simulation
-        self._shown: Shown
+        self._shown: SimulationDisplay
 
     def play(self) -> None:
         """Builds the simulation and runs it until the worker must stop.
@@ -82,7 +82,7 @@ class SimulationRun(ControlledRun):
         with limits, suppress(EndOfRun), shared_random(limits.program_seed), held as helpers, BuiltOutput() as output:
             simulation, parameters = Blueprint(start.source, start.path, Path(start.folder), helpers).build(start.settings)
             output.attach_to(simulation)
-            self._simulation, self._shown = simulation, Shown(simulation)
+            self._simulation, self._shown = simulation, SimulationDisplay(simulation)
             self._prepare(limits, parameters, helpers)
             if simulation.world.bodies:
                 self._controller.use_real_time()
@@ -206,7 +206,7 @@ class SimulationRun(ControlledRun):
         return trace
 
     @property
-    def shown(self) -> Shown:
+    def shown(self) -> SimulationDisplay:
         return self._shown
 
     def go_to(self, time: int) -> None:

@@ -17,10 +17,10 @@ from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import TURNED, Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
-from actr3d.experiment.report.beside import Beside, matched_means, missing, without_failures
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.reference_means import ReferenceMeans, matched_means, missing, without_failures
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, in_order, rmse_and_r
 
@@ -109,7 +109,7 @@ def frame_of(results: Results, findings: Findings) -> Any:
 
 
 @analysis(*OF_WALKS, people=("shoulder_width", "ratio"))
-def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
+def passing_apertures(results: Results, others: Sequence[ReferenceMeans]) -> list[Section]:
     """Returns the sections on walking through apertures."""
     by = "aperture" if "aperture" in results.factors else "ratio"
     findings = Findings(passings_of(results), by)
@@ -134,7 +134,7 @@ def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
 
 
 @analysis("judged", "passable", "ratio", "shoulder_width")
-def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
+def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> list[Section]:
     """Returns the sections on judging whether one could pass without turning."""
     pd, rows = pandas(), results.rows
     judged: list[list[tuple[float, bool]]] = []
@@ -201,7 +201,7 @@ class Rotation:
         others: Means of people, or of another experiment.
     """
 
-    def __init__(self, results: Results, findings: Findings, frame: Any, others: Sequence[Beside]) -> None:
+    def __init__(self, results: Results, findings: Findings, frame: Any, others: Sequence[ReferenceMeans]) -> None:
         self._results = results
         self._findings, self._others = findings, [with_greatest_angles(one, findings.by) for one in others]
         self._by_aperture = findings.by == "aperture"
@@ -388,7 +388,7 @@ class Rotation:
         return [Table(name="aic", title="Ratio or width?", frame=pandas().DataFrame(rows), note=note, digits={"aic": 1})]
 
 
-def with_greatest_angles(one: Beside, by: str) -> Beside:
+def with_greatest_angles(one: ReferenceMeans, by: str) -> ReferenceMeans:
     """Returns means to show beside those of the model, with angles of another experiment that are computed as the model's.
 
     These are the angles at the wall; for a walker that did not reach the wall, its greatest angle. Means of people are returned unchanged.
@@ -400,7 +400,7 @@ def with_greatest_angles(one: Beside, by: str) -> Beside:
     return replace(one, frame=means.rename(columns={"level": by}).assign(measure="wall_angle_deg"))
 
 
-def at_own_ratios(one: Beside) -> Beside:
+def at_own_ratios(one: ReferenceMeans) -> ReferenceMeans:
     """Returns mean angles at the wall to show by A/S: each at the mean ratio of the participants of its cell.
 
     The ratios are those of the trials; of people, `ratio`, or else the aperture divided by their `shoulder_width`. Without these, the
@@ -422,7 +422,7 @@ def at_own_ratios(one: Beside) -> Beside:
     return replace(one, frame=cell_means(rows, "angle", keys).assign(ratio=ratios, measure="wall_angle_deg"))
 
 
-def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str], label: str, x: str, scale: float) -> list[Curve]:
+def _curves_beside(others: Sequence[ReferenceMeans], measure: str, cell: dict[str, str], label: str, x: str, scale: float) -> list[Curve]:
     """Returns the means of people and of other experiments in a cell; those of all groups or conditions count for each of them."""
     found: list[Curve] = []
     for one in others:

@@ -10,7 +10,7 @@ from actr3d.experiment.report.parts import Section
 from actr3d.registry import Registry, import_modules, lasting_name
 
 Sections = Callable[[Any, Sequence[Any]], Sequence[Section]]
-"""Returns sections, from the `Results` of the experiment and the `Beside` means of people and other experiments."""
+"""Returns sections, from the `Results` of the experiment and the means of people and of other experiments."""
 F = TypeVar("F", bound=Sections)
 
 ANALYSES: Registry[Sections] = Registry("analysis")
@@ -21,7 +21,7 @@ def analysis(*columns: str, people: Collection[str] = ()) -> Callable[[F], F]:
     """Registers a function that returns more sections of a report.
 
     It is called for every experiment whose trials have certain columns, whatever its design and its model are called. Its arguments are
-    a `Results`, and a list of `Beside`: means of people, or of another experiment. A file with a design can define such a function, too.
+    a `Results`, and a list of `ReferenceMeans`: of people, or of another experiment. A file with a design can define such a function, too.
 
     Args:
         columns: The names of the columns: measures, factors or other parameters.

@@ -11,11 +11,11 @@ from contextlib import suppress
 from pathlib import Path
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.figures import png, svg
 from actr3d.experiment.report.general import analysis_sections, comparison_section, human_section, measure_sections, what_was_run
 from actr3d.experiment.report.page import MADE_BY, page
 from actr3d.experiment.report.parts import Plot, Section, Table
+from actr3d.experiment.report.reference_means import ReferenceMeans, human_data_of, means_of_experiment, means_of_people
 from actr3d.experiment.report.results import Results, by_number, read_results
 
 REPORT, PAGE = "report", "index.html"
@@ -50,14 +50,14 @@ def write_report(
     _check_place(final)
     parts = by_number(results)
     data, why = human_data_of(results.design, parts, human)
-    people = None if data is None else beside_people(data, parts)
+    people = None if data is None else means_of_people(data, parts)
     other = None if compare is None else read_results(compare)
-    beside = None if other is None else beside_experiment(by_number(other), parts)
-    others: list[Beside] = [one for one in (people, beside) if one is not None]
+    reference = None if other is None else means_of_experiment(by_number(other), parts)
+    others: list[ReferenceMeans] = [one for one in (people, reference) if one is not None]
     analyses = analysis_sections(results, others)
     sections = [what_was_run(results), *analyses, human_section(parts, data, why, people)]
     if other is not None:
-        sections.append(comparison_section(results, other, parts, beside))
+        sections.append(comparison_section(results, other, parts, reference))
     sections += measure_sections(parts, others, secondary=not all(section.failed for section in analyses))
     _write(final, results, sections, hint="; name another folder with --out" if out is None else "")
     if failed := [section.failed for section in sections if section.failed]:

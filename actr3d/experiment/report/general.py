@@ -13,10 +13,10 @@ import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
 from actr3d.experiment.report.analyses import find_analyses
-from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing, ran_at, same_unit, varied_once
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.reference_means import ReferenceMeans, factors_of, fit_to, matched, missing, ran_at, same_unit, varied_once
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, in_order, participant_means, run_tests
 from actr3d.experiment.trial_measures import NOTHING_LEFT, ended_early
@@ -120,7 +120,7 @@ def failures(results: Results) -> Table:
     return Table(name="failures", title="Failures", frame=table, note=note)
 
 
-def analysis_sections(results: Results, others: Sequence[Beside]) -> list[Section]:
+def analysis_sections(results: Results, others: Sequence[ReferenceMeans]) -> list[Section]:
     """Returns the sections of the analyses that can be made of an experiment; an error ends those of its own analysis, and no other."""
     found = list[Section]()
     for make in find_analyses(results.rows.columns):
@@ -142,9 +142,9 @@ def _failed(what: str, error: Exception, parts: list[str | Table | Plot | Cautio
     return why
 
 
-def human_section(parts: Sequence[Results], data: HumanData | None, why: str, beside: Beside | None) -> Section:
+def human_section(parts: Sequence[Results], data: HumanData | None, why: str, reference: ReferenceMeans | None) -> Section:
     """Returns the section on human data: what there is, where it is from, and how well the model agrees with it."""
-    if data is None or beside is None:
+    if data is None or reference is None:
         return Section(title="Human data", parts=[why, "Figures show the model only."])
     people = len({(row["group"], row["participant"]) for row in data.rows}) if not data.published else 0
     kind = "published means" if data.published else f"trials of {people} {'person' if people == 1 else 'people'}"
@@ -152,18 +152,18 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, be
     if data.published:
         found += [f"Source: {source}" for source in data.sources]
         found.append("Intervals of published means follow from their SD and n (t distribution); means without these have none.")
-    fit = fit_to(parts, beside)
+    fit = fit_to(parts, reference)
     without = [name for part in parts for name in part.measures if name not in data.measures]
     if len(fit):
         note = "Agreement of the means of all cells that both have. A model must be compared with a baseline, too."
         found.append(Table(name="fit_to_people", title="Agreement with people", frame=fit, note=note, hidden=["beside"]))
-        found.append(_matched_table(parts, beside, "means_beside_people", "Means beside those of people"))
+        found.append(_matched_table(parts, reference, "means_beside_people", "Means beside those of people"))
     if without:
         found.append(f"No human data for: {', '.join(without)}.")
     return Section(title="Human data", parts=found)
 
 
-def comparison_section(results: Results, other: Results, parts: Sequence[Results], beside: Beside | None) -> Section:
+def comparison_section(results: Results, other: Results, parts: Sequence[Results], reference: ReferenceMeans | None) -> Section:
     """Returns the section that compares two experiments."""
     title = f"Compared with {other.label}"
     if not any(name in other.measures and same_unit(results, other, name) for name in results.measures):
@@ -174,9 +174,9 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
     found: list[str | Table | Plot | Caution] = [text, *levels_compared(results, other)]
     if units := [name for name in results.measures if name in other.measures and not same_unit(results, other, name)]:
         found.append(Caution(f"Not compared, because {other.label} has them in another unit: {', '.join(units)}."))
-    if beside is not None and len(fit := fit_to(parts, beside)):
+    if reference is not None and len(fit := fit_to(parts, reference)):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
-        found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
+        found.append(_matched_table(parts, reference, "means_beside_other", f"Means beside those of {other.label}"))
     else:
         found.append(Caution("The two experiments have no cell in common without failed trials: their means are not compared."))
     return Section(title=title, parts=found)
@@ -203,15 +203,15 @@ def levels_compared(results: Results, other: Results) -> list[str | Caution]:
     return found
 
 
-def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: str) -> Table:
-    pieces = [matched(part, beside, measure).assign(measure=measure) for part in parts for measure in part.measures]
+def _matched_table(parts: Sequence[Results], reference: ReferenceMeans, name: str, title: str) -> Table:
+    pieces = [matched(part, reference, measure).assign(measure=measure) for part in parts for measure in part.measures]
     frame = pandas().concat([piece for piece in pieces if len(piece)], ignore_index=True)
     first = ["measure", "group", *factors_of(parts)]
     frame = frame[[*first, *(column for column in frame if column not in first)]]
-    return Table(name=name, title=title, frame=frame, heads={"beside": beside.label}, folded=True)
+    return Table(name=name, title=title, frame=frame, heads={"beside": reference.label}, folded=True)
 
 
-def measure_sections(parts: Sequence[Results], others: Sequence[Beside], *, secondary: bool = False) -> list[Section]:
+def measure_sections(parts: Sequence[Results], others: Sequence[ReferenceMeans], *, secondary: bool = False) -> list[Section]:
     """Returns a section for each measure, and one that explains what all measures show.
 
     Args:
@@ -242,7 +242,7 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
     return found
 
 
-def _measure_section(results: Results, measure: str, others: Sequence[Beside], *, secondary: bool) -> Section:
+def _measure_section(results: Results, measure: str, others: Sequence[ReferenceMeans], *, secondary: bool) -> Section:
     """Returns the section of a measure, see `measure_sections`; an error ends this section, and no other."""
     parts, failed = list[str | Table | Plot | Caution](), ""
     try:
@@ -255,7 +255,7 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside], *
     return Section(title=results.name_with_unit(measure), parts=parts, folded=folded, failed=failed)
 
 
-def _measure_parts(results: Results, measure: str, others: Sequence[Beside]) -> Iterator[str | Table | Plot | Caution]:
+def _measure_parts(results: Results, measure: str, others: Sequence[ReferenceMeans]) -> Iterator[str | Table | Plot | Caution]:
     unit, meaning = results.unit(measure), results.columns[measure].meaning if measure in results.columns else ""
     by = [*(["group"] if len(results.groups) > 1 else []), *results.factors]
     means = cell_means(results.rows, measure, by)
@@ -326,7 +326,7 @@ def layout_of(results: Results) -> Layout | None:
     return Layout(x=order[0], curves=curves, panes=panes, averaged=left)
 
 
-def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple[Any, str]:
+def figure_of(results: Results, measure: str, others: Sequence[ReferenceMeans]) -> tuple[Any, str]:
     """Returns the figure of a measure, and a note; `(None, "")` if there is only one cell."""
     layout = layout_of(results)
     if layout is None:
@@ -375,9 +375,9 @@ def _curves(
     return found
 
 
-def _averaged(beside: Beside, measure: str, by: Sequence[str], results: Results) -> Any:
+def _averaged(reference: ReferenceMeans, measure: str, by: Sequence[str], results: Results) -> Any:
     """Returns the means of another source for a figure: those of cells that the figure averages over are averaged, without intervals."""
-    rows = beside.of(measure)
+    rows = reference.of(measure)
     over = [name for name in ("group", *results.all_factors) if name not in by and rows[name].notna().any()]
     if not any(rows[name].nunique() > 1 for name in over):
         return rows

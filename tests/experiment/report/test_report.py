@@ -24,13 +24,13 @@ from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
-from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, fit_to, human_data_of
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
 from actr3d.experiment.report.libraries import pandas, pingouin
 from actr3d.experiment.report.page import page as report_page
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.reference_means import ReferenceMeans, fit_to, human_data_of, means_of_experiment, means_of_people
 from actr3d.experiment.report.results import Results, by_number, read_results
 from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
@@ -63,7 +63,7 @@ def walk_through(trial: Any) -> dict[str, Any]:
     return {name: value for name, value in walk(trial).items() if name in names}
 
 
-def parts_on_apertures(folder: Path, others: Sequence[Beside] = ()) -> list[str | Table | Plot | Caution]:
+def parts_on_apertures(folder: Path, others: Sequence[ReferenceMeans] = ()) -> list[str | Table | Plot | Caution]:
     """Returns the parts of the sections on apertures, without writing a report: that would draw all figures and test each measure."""
     return [part for section in passing_apertures(read_results(folder), list(others)) for part in section.parts]
 
@@ -257,11 +257,11 @@ def test_own_human_data_are_drawn_and_compared(walked: Path) -> None:
     assert "Human mean angles for each aperture are not available" not in page(walked)
 
 
-def beside(folder: Path, people: Path) -> list[Beside]:
+def beside(folder: Path, people: Path) -> list[ReferenceMeans]:
     parts = by_number(read_results(folder))
     data, _ = human_data_of(parts[0].design, parts, people)
     assert data is not None
-    return [beside_people(data, parts)]
+    return [means_of_people(data, parts)]
 
 
 def rotation(folder: Path, people: Path) -> Rotation:
@@ -304,7 +304,7 @@ def test_another_experiment_is_drawn_by_the_ratios_of_its_own_participants(tmp_p
     folder = store_rows(tmp_path / "walks", "warren_whang_1987", walk_through, participants=1, trials=1, values=values)
     results = read_results(folder)
     parts = by_number(results)
-    other = beside_experiment(parts, parts)
+    other = means_of_experiment(parts, parts)
     assert other is not None
     assert sorted(set(at_own_ratios(other).frame["ratio"])) == [0.8, 1.0]
 
@@ -346,7 +346,7 @@ def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:
     assert "accuracy_3" not in page(folder)
     again = read_results(store_rows(tmp_path / "again", "paired_associates", learn, participants=3))
     parts = by_number(read_results(folder))
-    other = beside_experiment(by_number(again), parts)
+    other = means_of_experiment(by_number(again), parts)
     assert other is not None
     fits = fit_to(parts, other)
     assert dict(zip(fits["measure"], fits["cells"], strict=True)) == {"accuracy": 8, "latency": 7}
@@ -379,7 +379,7 @@ def test_cells_with_failed_trials_are_named_and_not_compared(tmp_path: Path) -> 
     said = cautions(what_was_run(failing).parts)
     assert "Cells with failed trials: n 5. What is left may be the easier ones" in said
     for one, other in ((failing, whole), (whole, failing)):
-        beside = beside_experiment([other], [one])
+        beside = means_of_experiment([other], [one])
         assert beside is not None
         assert list(fit_to([one], beside)["cells"]) == [2, 2]
 
@@ -527,14 +527,14 @@ def test_a_factor_that_one_experiment_varies_is_compared_at_the_level_of_the_oth
     one = paced(tmp_path / "one", '{"pace": [1.0, 2.0, 3.0]}')
     two = paced(tmp_path / "two", f'{{"n": [1, 3]}}{there}')
     for results, other in ((one, two), (two, one)):
-        beside = beside_experiment([other], [results])
+        beside = means_of_experiment([other], [results])
         parts = comparison_section(results, other, [results], beside).parts
         means = frames(parts)["means_beside_other"].query("measure == 'rt'") if common else pandas().DataFrame({"model": [], "beside": []})
         assert list(means["model"]) == list(means["beside"]) == common
         agreement = frames(parts)["fit_to_other"] if common else pandas().DataFrame({"left_out": []})
         assert list(agreement["left_out"]) == [2 if other is one else 1] * 2 * len(common)
         assert ("have no cell in common" in cautions(parts)) == (not common)
-    parts = comparison_section(one, two, [one], beside_experiment([two], [one])).parts
+    parts = comparison_section(one, two, [one], means_of_experiment([two], [one])).parts
     assert said in [part.text if isinstance(part, Caution) else part for part in parts]
 
 
@@ -543,7 +543,7 @@ def test_a_default_that_is_no_number_is_a_level_too(tmp_path: Path, levels: str,
     one = paced(tmp_path / "one", f'{{"n": [1, 2], "pace": {levels}}}', default)
     for name, given in (("two", ""), ("three", f', settings={{"pace": {default}}}')):
         two = paced(tmp_path / name, f'{{"n": [1, 2]}}{given}', default)
-        beside = beside_experiment([two], [one])
+        beside = means_of_experiment([two], [one])
         assert beside is not None
         assert list(fit_to([one], beside)["cells"]) == [2, 2]
 
@@ -566,7 +566,7 @@ def test_angles_of_walkers_that_do_not_reach_the_wall_are_the_greatest_ones_in_b
         return {**walk(trial), "peak_angle_deg": 60.0, **({"wall_angle_deg": None, "outcome": "stopped"} if trial.number % 2 else {})}
 
     results = read_results(store_rows(tmp_path / "out", "warren_whang_1987", stopping, trials=2, participants=2))
-    beside = beside_experiment(by_number(results), by_number(results))
+    beside = means_of_experiment(by_number(results), by_number(results))
     assert beside is not None
     frame = frame_of(results, Findings(passings_of(results)))
     assert (frame["angle"] == 60).sum() >= len(frame) / 2
@@ -611,7 +611,7 @@ def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) 
     def compared(name: str, design: str, **options: Any) -> str:
         results, other = read_results(one), read_results(store_rows(tmp_path / name, design, count, **options))
         parts = by_number(results)
-        text = comparison_section(results, other, parts, beside_experiment(by_number(other), parts)).parts[0]
+        text = comparison_section(results, other, parts, means_of_experiment(by_number(other), parts)).parts[0]
         return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*)\.", str(text))[0]
 
     assert compared("same", same) == "nothing that was set"

@@ -24,7 +24,7 @@ from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.page_commands import Question
 from workbench.protocol import COMMAND
-from workbench.worker.shown import Shown
+from workbench.worker.simulation_display import SimulationDisplay
 from workbench.worker.state_history import NEAR, Walked
 
 LOOKING = """from actr3d.actr import *
@@ -93,7 +93,7 @@ def test_an_overlay_and_a_question_read_noisy_senses_and_the_agent_senses_the_sa
             return run.shown.simulation.world.bodies["walker"].get("rangefinder", noise=0.05)
 
     monkeypatch.setitem(OVERLAYS, "near", Near)
-    alone, shown = sensing(), Shown(sensing())
+    alone, shown = sensing(), SimulationDisplay(sensing())
     controller: Any = SimpleNamespace(run=SimpleNamespace(shown=shown))
     for _ in range(200):
         alone.advance(1)

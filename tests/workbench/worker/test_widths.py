@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from actr3d.parameter_schema import LiveCommand, Parameter
-from workbench.worker.shown import widths
+from workbench.worker.simulation_display import widths
 
 OPENS = LiveCommand(word="aperture")
 

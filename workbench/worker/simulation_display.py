@@ -28,7 +28,7 @@ WIDEST = 300
 """Default maximum width of a doorway [cm], if no parameter limits it. Chosen here."""
 
 
-class Shown:
+class SimulationDisplay:
     """Provides what pages show of a simulation.
 
     Args:

@@ -22,7 +22,7 @@ from actr3d.experiment.report.statistics import cell_means, rmse_and_r
 
 
 @dataclass(frozen=True, kw_only=True)
-class Beside:
+class ReferenceMeans:
     """Means by cell from elsewhere."""
 
     label: str
@@ -93,7 +93,7 @@ def _measures_in(path: Path) -> set[str]:
     return set(path.read_text(encoding="utf-8").replace("\n", ",").split(","))
 
 
-def beside_people(data: HumanData, parts: Sequence[Results]) -> Beside:
+def means_of_people(data: HumanData, parts: Sequence[Results]) -> ReferenceMeans:
     """Returns human data as means by cell."""
     pd, factors = pandas(), list(factors_of(parts))
     columns = ["group", *factors, "measure", "mean", "sd", "low", "high", "n"]
@@ -104,7 +104,7 @@ def beside_people(data: HumanData, parts: Sequence[Results]) -> Beside:
         enough = frame["n"].where(frame["n"] > 1)
         half: Any = stdtrit(enough - 1, 0.975) * frame["sd"] / np.sqrt(enough)
         frame["low"], frame["high"] = frame["mean"] - half, frame["mean"] + half
-        return Beside(label="people", look="human", frame=frame[columns])
+        return ReferenceMeans(label="people", look="human", frame=frame[columns])
     rows = pd.DataFrame([dict(row) for row in data.rows])
     rows["participant"] = rows["group"] + " " + rows["participant"]
     given = [name for name in ("group", *factors) if rows[name].notna().any()]
@@ -113,10 +113,10 @@ def beside_people(data: HumanData, parts: Sequence[Results]) -> Beside:
     there = [measure for measure in data.measures if rows[measure].notna().any()]
     pieces = [cell_means(rows, measure, given).assign(measure=measure) for measure in there]
     frame = pd.concat(pieces, ignore_index=True) if pieces else pd.DataFrame(columns=columns)
-    return Beside(label="people", look="human", frame=frame.reindex(columns=columns), trials=rows)
+    return ReferenceMeans(label="people", look="human", frame=frame.reindex(columns=columns), trials=rows)
 
 
-def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Beside | None:
+def means_of_experiment(others: Sequence[Results], parts: Sequence[Results]) -> ReferenceMeans | None:
     """Returns the means of another experiment, at the levels at which both ran; None if it has no measure in common, or no such trials."""
     pd, pieces, left_out = pandas(), list[Any](), dict[str, int]()
     for part, other in itertools.product(parts, others):
@@ -133,7 +133,7 @@ def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Be
     frame = pd.concat([piece for piece in pieces if len(piece)], ignore_index=True)
     columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
     results = at_common_levels(others[0], parts[0])
-    return Beside(label=results.label, look="other", frame=frame.reindex(columns=columns), results=results, left_out=left_out)
+    return ReferenceMeans(label=results.label, look="other", frame=frame.reindex(columns=columns), results=results, left_out=left_out)
 
 
 def at_common_levels(other: Results, results: Results) -> Results:
@@ -196,15 +196,15 @@ def same_unit(one: Results, other: Results, measure: str) -> bool:
     return len(units) <= 1
 
 
-def matched(results: Results, beside: Beside, measure: str) -> Any:
+def matched(results: Results, reference: ReferenceMeans, measure: str) -> Any:
     """Returns a `DataFrame` of the cells that both have: `model`, `beside` and what makes the cell. Means over all groups or levels are
     compared with the model's means over all.
 
     Cells in which a trial failed are left out, see `without_failures`.
     """
     keys = ["group", *results.all_factors]
-    found = matched_means(results.rows, measure, keys, beside.of(measure))
-    return without_failures(found, keys, [results, *([] if beside.results is None else [beside.results])])
+    found = matched_means(results.rows, measure, keys, reference.of(measure))
+    return without_failures(found, keys, [results, *([] if reference.results is None else [reference.results])])
 
 
 def without_failures(cells: Any, keys: Sequence[str], experiments: Sequence[Results]) -> Any:
@@ -233,7 +233,7 @@ def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) ->
         trials: The trials of the model.
         measure: The column of them whose means are compared.
         keys: The columns that make a cell.
-        means: The means beside, with the same columns and `mean`.
+        means: The reference means, with the same columns and `mean`.
     """
     found: list[dict[str, Any]] = []
     for given, rows in _patterns(means, keys):
@@ -245,18 +245,18 @@ def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) ->
     return pandas().DataFrame(found, columns=[*keys, "model", "beside"])
 
 
-def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
+def fit_to(parts: Sequence[Results], reference: ReferenceMeans) -> Any:
     """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have, see `matched`, and how
     many of the means beside are left out."""
     found: list[dict[str, Any]] = []
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
-        cells = matched(results, beside, measure)
+        cells = matched(results, reference, measure)
         if len(cells):
             rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
-            left_out = len(beside.of(measure)) - len(cells) + beside.left_out.get(measure, 0)
-            row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells), "left_out": left_out}
+            left_out = len(reference.of(measure)) - len(cells) + reference.left_out.get(measure, 0)
+            row = {"measure": measure, "unit": unit, "beside": reference.label, "cells": len(cells), "left_out": left_out}
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
     return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])
 

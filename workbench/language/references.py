@@ -58,7 +58,7 @@ class WordPlace:
 _LIBRARY = Meaning(what="local", owners=frozenset({"library"}))
 
 
-class SameWords:
+class References:
     """The words of a text, and what they mean.
 
     Args:

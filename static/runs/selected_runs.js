@@ -110,7 +110,7 @@ function Many({ list }) {
 }
 
 /** @param list The chosen recordings, in the order of the list. */
-export function Chosen({ list }) {
+export function SelectedRuns({ list }) {
   const doing = busy.value;
   return html`<section class="runs-chosen ${withFacts.value ? "with-facts" : ""}" aria-label="Chosen">
     ${doing ? html`<div class="replayed" role="status"><progress value=${doing.done} max=${doing.of} aria-label=${doing.text}></progress> ${doing.text}${doing.of ? ` ${doing.done} of ${doing.of}` : ""}</div>` : null}

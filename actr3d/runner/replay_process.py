@@ -33,15 +33,15 @@ import json, sys
 order = json.loads(sys.argv[1])
 sys.path[:] = order.pop("path")
 try:
-    from actr3d.runner.verdict import give_verdict
-    give_verdict(**order)
+    from actr3d.runner.replay_process import write_result
+    write_result(**order)
 except KeyboardInterrupt:
     sys.exit(130)
 """
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
+class ReplayResult:
     """The result of a replay."""
 
     code: int
@@ -49,7 +49,7 @@ class Verdict:
     text: str
 
 
-def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
+def replay_in_process(file: str, *, trust: bool, any_version: bool) -> ReplayResult:
     """Runs a recording again, in a process of its own; returns its verdict.
 
     The verdict comes in a file that only this process and that one know of, so nothing that the program prints, and no way in
@@ -75,12 +75,12 @@ def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
             process.kill()
             process.wait()
         try:
-            return Verdict(**json.loads(to.read_text(encoding="utf-8")))
+            return ReplayResult(**json.loads(to.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):
-            return Verdict(code=UNKNOWN, text=f"error: no verdict: {_ended(status)}\n")
+            return ReplayResult(code=UNKNOWN, text=f"error: no verdict: {_ended(status)}\n")
 
 
-def give_verdict(*, file: str, to: str, trust: bool, any_version: bool) -> None:
+def write_result(*, file: str, to: str, trust: bool, any_version: bool) -> None:
     """Runs a recording again in this process, and writes the verdict to a file."""
     process = os.getpid()
     verdict = _answered(file, partial(_compare, file, trust, any_version, Path(to).parent))
@@ -93,15 +93,15 @@ def _check(file: str, trust: bool, any_version: bool) -> None:
         check_replayable(recorded, trust=trust, any_version=any_version)
 
 
-def _compare(file: str, trust: bool, any_version: bool, within: Path) -> Verdict:
+def _compare(file: str, trust: bool, any_version: bool, within: Path) -> ReplayResult:
     from actr3d.runner.replay import replay
 
     with Recorded(file) as recorded:
         comparison = replay(recorded, trust=trust, any_version=any_version, within=within)
-    return Verdict(code=AGREES if comparison.difference is None else DIFFERS, text=f"{comparison}\n")
+    return ReplayResult(code=AGREES if comparison.difference is None else DIFFERS, text=f"{comparison}\n")
 
 
-def _answered(file: str, work: Callable[[], T]) -> T | Verdict:
+def _answered(file: str, work: Callable[[], T]) -> T | ReplayResult:
     """Returns the result of some work with a recording, or the reason why it cannot be done."""
     try:
         return work()
@@ -112,7 +112,7 @@ def _answered(file: str, work: Callable[[], T]) -> T | Verdict:
         text = traceback_report(error).text
     except Exception as error:  # noqa: BLE001 - a file that anybody may have made is never answered by a traceback
         text = f"error: '{file}' cannot be run again: {type(error).__name__}: {error}\n"
-    return Verdict(code=UNKNOWN, text=text)
+    return ReplayResult(code=UNKNOWN, text=text)
 
 
 def _ended(status: int) -> str:
