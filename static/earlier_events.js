@@ -2,7 +2,7 @@
 // it has not room for all. After a run has gone far back, it gets those around that moment.
 
 import { effect, signal } from "./vendor/preact.js";
-import { say } from "./server.js";
+import { request } from "./server.js";
 import { addEarlier, alive, events, replaceEvents, roomForEarlier, running, session, state, way } from "./store.js";
 
 const AT_ONCE = 5000; // the number of events per request: more would delay commands
@@ -30,7 +30,7 @@ const held = () => ({ way: way.peek(), list: events.peek().list, first: events.p
 const holds = (before) => Object.entries(held()).every(([name, value]) => value === before[name]);
 
 /** Requests events; returns fewer than asked for if the run has no more. */
-const between = async (begin, end) => (await say({ type: "events", first: begin, most: end - begin, ahead: true })).events;
+const between = async (begin, end) => (await request({ type: "events", first: begin, most: end - begin, ahead: true })).events;
 
 /** Shows events in place of those that the page has, once all have come. */
 async function fetchInstead({ from, to }) {

@@ -157,7 +157,7 @@ export async function showRecording(id, { trust = false, run = false, at = null 
     }
     if (!wanted()) return false;
     show(found.id);
-    if (run) order({ type: "run" });
+    if (run) sendCommand({ type: "run" });
     return true;
   } catch (error) {
     if (!wanted()) return false;

@@ -262,7 +262,9 @@ def test_the_form_for_moving_has_the_place_of_the_chosen_thing(pages: Callable[.
     fields.nth(0).fill("1.5")
     dialog.get_by_role("button", name="Move").click()
     expect(dialog).to_have_count(0)
-    place = page.evaluate("async () => await (await part('server.js')).request({ type: 'present', word: 'move', named: { object: 'walker' } })")
+    place = page.evaluate(
+        "async () => await (await part('server.js')).request({ type: 'present', word: 'move', named: { object: 'walker' } })"
+    )
     assert place == {"x": 1.5, "y": -0.5, "heading": pytest.approx(0.5, abs=1e-12)}  # what was not changed is as exact as it was
 
 

@@ -211,7 +211,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
 def asked_before_change(page: Page) -> Locator:
     """Empties the buffer of the goal; returns the question that the page asks before it does."""
     change = {"type": "command", "word": "clear_buffer", "named": {"buffer": "goal"}}
-    page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
+    page.evaluate("async (what) => void (await part('bar/branch.js')).sendChange(what)", change)
     return page.get_by_role("dialog", name="Change the past?")
 
 

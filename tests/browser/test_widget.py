@@ -173,7 +173,7 @@ def test_a_recording_in_a_notebook_says_that_it_was_changed_and_asks_before_more
     def change(time: float) -> None:
         order("server.js", "sendCommand", type="seek", time=time)
         time_of(frame, f"t = {time:.2f} s")
-        order("bar/branch.js", "orderChange", type="command", word="clear_buffer", named={"buffer": "goal"})
+        order("bar/branch.js", "sendChange", type="command", word="clear_buffer", named={"buffer": "goal"})
 
     change(0.1)
     expect(frame.get_by_role("heading", name="Branch of the recording of")).to_be_visible()
