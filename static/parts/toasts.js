@@ -1,6 +1,6 @@
 // The latest problem, or message that offers an action, shown for a while over the page; all problems stay in the tab Messages.
 
-import { html, signal, useEffect } from "../vendor/preact.js";
+import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { isAhead, isPresent, isSettled, notices, settle, takeAction } from "../store.js";
 import { goToTab, openTab } from "../open_tab.js";
 import { Button } from "./button.js";
@@ -19,30 +19,38 @@ export function Toasts() {
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [latest]);
   const shown = toast.value;
+  return html`<div class="toasts" aria-live="assertive">
+    ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages" ? html`<${Toast} notice=${shown} />` : null}
+  </div>`;
+}
+
+/** A notice, shown for a while, and as long as the pointer or the focus is in it. */
+function Toast({ notice }) {
+  const place = useRef(null);
+  const isHeld = useSignal(false);
+  const close = () => (toast.value = null);
+  const leave = () => (isHeld.value = place.current?.matches(":hover, :focus-within"));
   useEffect(() => {
-    if (!shown) return undefined;
-    const timer = setTimeout(() => (toast.value = null), SHOWN);
+    if (isHeld.value) return undefined;
+    const timer = setTimeout(close, SHOWN);
     return () => clearTimeout(timer);
-  }, [shown]);
+  }, [notice, isHeld.value]);
 
   function read() {
-    toast.value = null;
+    close();
     goToTab("messages");
   }
 
   function act() {
-    toast.value = null;
-    takeAction(shown);
+    close();
+    takeAction(notice);
   }
 
-  return html`<div class="toasts" aria-live="assertive">
-    ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages"
-      ? html`<div class="toast ${shown.level}">
-          <span>${shown.file ? html`<${Place} file=${shown.file} line=${shown.line} /> ` : null}${shown.text}</span>
-          ${shown.action ? html`<${Button} onClick=${act}>${shown.action.text}<//>` : null}
-          <${Button} class="bare" onClick=${read}>Show<//>
-          <${Button} class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕<//>
-        </div>`
-      : null}
+  const hold = () => (isHeld.value = true);
+  return html`<div ref=${place} class="toast ${notice.level}" onPointerEnter=${hold} onPointerLeave=${leave} onFocusIn=${hold} onFocusOut=${leave}>
+    <span>${notice.file ? html`<${Place} file=${notice.file} line=${notice.line} /> ` : null}${notice.text}</span>
+    ${notice.action ? html`<${Button} onClick=${act}>${notice.action.text}<//>` : null}
+    <${Button} class="bare" onClick=${read}>Show<//>
+    <${Button} class="bare" aria-label="Close" onClick=${close}>✕<//>
   </div>`;
 }

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.helpers.page import answers, becomes_true, open_tab, say, shows, until
 from tests.helpers.workbench_server import Served
@@ -344,9 +344,36 @@ def reached(page: Page, name: str) -> list[str]:
     raise AssertionError(f"the button {name!r} is not reached")
 
 
+def offer(page: Page) -> Locator:
+    """Makes the page show a message with an action; returns it."""
+    page.evaluate(
+        """async () => (await part("store.js")).complain("It is in the trash folder.", "info", { text: "Restore", work: () => {} })"""
+    )
+    toast = page.locator(".toast")
+    expect(toast).to_be_visible()
+    return toast
+
+
+def test_a_message_stays_while_the_pointer_or_the_focus_is_in_it(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.clock.install()
+    for held, left in (
+        (lambda toast: toast.hover(), lambda: page.mouse.move(0, 0)),
+        (lambda toast: toast.get_by_role("button", name="Restore").focus(), lambda: page.locator("#timeline").focus()),
+    ):
+        toast = offer(page)
+        held(toast)
+        page.clock.run_for(30_000)
+        expect(toast).to_be_visible()
+        left()
+        page.clock.run_for(7_000)
+        expect(toast).to_be_visible()
+        page.clock.run_for(3_000)
+        expect(toast).to_have_count(0)
+
+
 def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) -> None:
     shows(page, "#status", "at its start")
-    offer = """async () => (await part("store.js")).complain("It is in the trash folder.", "info", { text: "Restore", work: () => {} })"""
 
     def removes(button: str, notice: str, others: int) -> None:
         """Presses it; the buttons before it in the notice are removed, too."""
@@ -356,9 +383,9 @@ def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) ->
         until(page, lambda: page.evaluate(NAMED) == passed[others])
 
     for button, others in (("Restore", 0), ("Close", 2)):
-        page.evaluate(offer)
+        offer(page)
         removes(button, ".toast", others)
-    page.evaluate(offer)
+    offer(page)
     reached(page, "Show")
     page.keyboard.press("Enter")
     expect(page.get_by_role("tabpanel", name="Messages")).to_be_focused()
