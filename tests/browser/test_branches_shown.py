@@ -357,19 +357,27 @@ def offer(page: Page) -> Locator:
 def test_a_message_stays_while_the_pointer_or_the_focus_is_in_it(page: Page) -> None:
     shows(page, "#status", "at its start")
     page.clock.install()
-    for held, left in (
-        (lambda toast: toast.hover(), lambda: page.mouse.move(0, 0)),
-        (lambda toast: toast.get_by_role("button", name="Restore").focus(), lambda: page.locator("#timeline").focus()),
-    ):
-        toast = offer(page)
-        held(toast)
+
+    def stays(toast: Locator) -> None:
         page.clock.run_for(30_000)
         expect(toast).to_be_visible()
-        left()
+
+    def goes(toast: Locator) -> None:
         page.clock.run_for(7_000)
         expect(toast).to_be_visible()
         page.clock.run_for(3_000)
         expect(toast).to_have_count(0)
+
+    toast = offer(page)
+    toast.hover()
+    stays(toast)
+    page.mouse.move(0, 0)
+    goes(toast)
+    toast = offer(page)
+    toast.get_by_role("button", name="Restore").focus()
+    stays(toast)
+    page.locator("#timeline").focus()
+    goes(toast)
 
 
 def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) -> None:
