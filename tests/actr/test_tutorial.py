@@ -69,6 +69,7 @@ def test_every_model_has_a_golden_trace_and_every_trace_a_model() -> None:
     assert [name for name in NAMES if golden_file(name).stat().st_size > LARGEST] == []
 
 
+@pytest.mark.daily(12)
 @pytest.mark.parametrize("name", NAMES)
 def test_does_what_its_golden_trace_says(name: str) -> None:
     compare(name, record(name))

@@ -33,6 +33,7 @@ def commands(page: Page) -> list[str]:
     }""")
 
 
+@pytest.mark.slow
 def test_the_value_of_a_live_parameter_is_that_of_the_moment_for_all_who_look(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")
@@ -342,6 +343,7 @@ def test_each_doorway_is_changed_in_the_bar_and_in_the_palette(pages: Callable[.
     (workbench.folder / "doorways.py").unlink()
 
 
+@pytest.mark.slow
 def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lost(pages: Callable[..., Page]) -> None:
     page = pages(refusals=True)
     shows(page, "#status", "at its start")

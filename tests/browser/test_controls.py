@@ -376,6 +376,7 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     expect(bar).to_have_attribute("aria-valuenow", str(after))
 
 
+@pytest.mark.slow
 def test_what_was_not_set_is_not_remembered_and_no_tab_loses_what_another_has_settled(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py", 2560, 1400)
     bar = page.get_by_role("separator", name="Width of the panels")

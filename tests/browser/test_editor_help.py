@@ -123,6 +123,7 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     has_line(page, "from actr3d.actr import *from actr3d.world import Floor")
 
 
+@pytest.mark.slow
 def test_in_a_call_that_changes_a_chunk_its_slots_are_offered_while_writing(opened: Callable[[str], Page]) -> None:
     page = opened(SHORT)
     options = page.locator(".cm-tooltip-autocomplete li")
@@ -216,6 +217,7 @@ def test_after_renaming_the_page_leads_to_the_lines_in_which_the_word_stays(open
 SEEN = "from actr3d.actr import *\n\nclass Spot(Model):\n    x = 1\n\nclass Person(ACTR):\n    vision = Vision(Buffer(), Buffer())\n"
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("text", "place", "why", "line", "shown"),
     [
@@ -314,7 +316,7 @@ PARTS = "        print(word)\n\n    retrieval = Buffer()\n    memory = Memory(re
 MOTOR = "    facts = Buffer()\n    motor = Motor()\n    memory = Memory(facts)\n"
 
 
-@pytest.mark.daily(3)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("text", "line", "keys", "piece", "expected"),
     [

@@ -368,6 +368,7 @@ def test_the_list_says_if_it_has_only_the_newest_experiments(pages: Callable[...
     expect(page.locator(".experiments .tools [role=status]")).to_have_text("the newest 1 of 301")
 
 
+@pytest.mark.slow
 def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_deleted_meanwhile(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="experiments", refusals=True)
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 4, "total": 8, "failures": 0}
@@ -432,6 +433,7 @@ def test_what_is_made_of_one_experiment_is_said_at_that_one_only(two_finished: t
     expect(page.locator(".tools .name")).to_have_text("first")
 
 
+@pytest.mark.slow
 def test_the_keyboard_goes_on_where_the_view_changes(two_finished: tuple[Page, list[dict[str, Any]], list[Route]]) -> None:
     page, _, wanted = two_finished
     page.get_by_role("button", name="second").press("Enter")
@@ -586,6 +588,7 @@ def test_an_experiment_without_a_common_condition_is_not_drawn_beside(blank: Pag
 TWO_FACTORS = SLOW_COUNTER.replace('mode = "count"', 'm = 1\nmode = "count"').replace('if mode == "fail"', 'if mode == "fail" and m == 3')
 
 
+@pytest.mark.slow
 def test_two_experiments_are_compared_over_the_conditions_that_both_have(pages: Callable[..., Page], workbench: Served) -> None:
     folder = workbench.folder / "two_factors"
     folder.mkdir()

@@ -371,6 +371,7 @@ def test_chunks_whose_activation_is_unknown_are_in_the_order_of_what_is_known_of
     assert blank.evaluate(order, [rows, False]) == ["known", "low", "middle", "high"]
 
 
+@pytest.mark.slow
 def test_the_activation_of_a_chosen_chunk_is_plotted_over_time_also_after_a_reload(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "chooses.py", CHOOSES)
     page.click("#run")

@@ -274,6 +274,7 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     expect(second).to_have_attribute("aria-selected", "true")
 
 
+@pytest.mark.slow
 def test_an_experiment_or_trial_that_is_ready_late_does_not_replace_what_is_shown_by_then(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="experiments")
     shows(page, "#status", "at its start")
@@ -396,6 +397,7 @@ def test_text_in_fields_stays_as_it_was_typed(pages: Callable[..., Page]) -> Non
     expect(speed).to_have_value("1.3")
 
 
+@pytest.mark.slow
 def test_over_http_from_another_machine_text_is_copied_by_hand_and_drafts_stay_with_their_tabs(
     pages: Callable[..., Page], workbench: Served
 ) -> None:

@@ -237,6 +237,7 @@ def test_a_link_leads_to_its_run_although_another_run_of_the_model_is_newer(page
     shows(page, "#time", r"0\.03 s")
 
 
+@pytest.mark.slow
 def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_it(pages: Pages) -> None:
     page = pages("counting.py")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import pytest
 from playwright.sync_api import Locator, Page, Route, expect
 
 from tests.helpers.page import answers, say, shows
@@ -244,6 +245,7 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     assert opened.value.url.endswith("/manual/how-to/profile/")
 
 
+@pytest.mark.slow
 def test_the_palette_sets_parameters_clears_messages_and_switches_to_other_open_runs(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
@@ -325,6 +327,7 @@ def test_the_palette_finds_what_a_button_of_the_scene_is_called(page: Page) -> N
     page.keyboard.press("Escape")
 
 
+@pytest.mark.slow
 def test_in_a_notebook_no_command_or_key_of_a_models_folder_exists(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")

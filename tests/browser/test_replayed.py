@@ -46,6 +46,7 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return file
 
 
+@pytest.mark.slow
 def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_was_not_over(browser: Browser, tmp_path: Path) -> None:
     trace = Trace("all")
     with Recording(tmp_path / "run.sqlite", program_facts("two.py", "", 1, None)) as recording, RunLimits(trace=trace, recorder=recording):

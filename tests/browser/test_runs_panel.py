@@ -212,6 +212,7 @@ def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, 
     expect(rows).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_after_the_only_row_was_deleted_by_keys_the_search_has_the_focus(page: Page, workbench: Served, recordings: Path) -> None:
     name = recorded(workbench, "counting.py")
     open_tab(page, "Runs")
@@ -243,6 +244,7 @@ def show_copies(page: Page, workbench: Served, recordings: Path, called: str) ->
     return copies
 
 
+@pytest.mark.slow
 def test_the_focus_stays_with_its_row_when_the_list_is_scrolled(page: Page, workbench: Served, recordings: Path) -> None:
     copies = show_copies(page, workbench, recordings, "long")
     order = [copy.stem for copy in reversed(copies)]

@@ -839,6 +839,7 @@ model.run()
 PLOTTED = """async () => (await part("timeline/curves.js")).plots.value.map(({ title, series }) => [title, series])"""
 
 
+@pytest.mark.slow
 def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "counts.py").write_text(COUNTS, encoding="utf-8")
     page = pages("counts.py", height=1000)
@@ -1099,6 +1100,7 @@ BANDS = """async () => {
 """The colours of the bands of each agent's productions."""
 
 
+@pytest.mark.slow
 def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
     (workbench.folder / "twins.py").write_text(TWINS, encoding="utf-8")
     page = pages("twins.py", height=1000)

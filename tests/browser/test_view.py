@@ -275,6 +275,7 @@ def drag(page: Page, x: float, y: float, button: Any = "left") -> None:
     page.wait_for_timeout(200)
 
 
+@pytest.mark.slow
 def test_the_free_camera_is_where_the_user_left_it_after_a_reload_until_the_view_is_reset(pages: Callable[..., Page]) -> None:
     page = pages(width=700, height=500)  # a small scene is drawn quickly
     frame = frame_of(page)

@@ -277,6 +277,7 @@ def test_the_library_is_imported_without_the_camera() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"
 
 
+@pytest.mark.slow
 def test_linear_algebra_is_loaded_for_functions_that_need_it_only() -> None:
     lines = ("import sys, numba, numpy; from actr3d.jit import kept", "loaded = lambda: 'scipy.linalg' in sys.modules")
     lines += ("print(kept(lambda a: a + 1)(1), loaded())", "print(numba.njit(lambda a: a @ a)(numpy.eye(1))[0, 0], loaded())")
@@ -293,6 +294,7 @@ def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> N
         assert subprocess.run(run, check=True, capture_output=True, text=True, env=environment).stdout == f"3 {cache}\n"
 
 
+@pytest.mark.slow
 def test_a_cache_that_cannot_be_read_any_more_is_not_read(tmp_path: Path) -> None:
     lines = ["import sys", "from actr3d import jit"]
     lines += ["jit.sources_digest = lambda *sources: int(sys.argv[2])", "shape = __import__(sys.argv[1])"]

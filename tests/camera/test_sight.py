@@ -110,6 +110,7 @@ def test_noise_of_a_view_is_seeded_and_leaves_the_view_alone() -> None:
     assert first.get("view") is plain
 
 
+@pytest.mark.slow
 def test_importing_the_camera_registers_the_sensor_before_or_after_the_world_is_made() -> None:
     made = "from actr3d.world import Mannequin, Scene, World; body = World(Scene(parts=(Mannequin(),))).bodies['mannequin']"
     refused = "try:\n    body.get('view')\nexcept Exception as error:\n    print(error)"

@@ -90,7 +90,7 @@ def profile(model: Model, axes: int, data: Any, axis: int) -> tuple[float | None
     return None if inside[0] == 0 else inside[0], None if inside[-1] == 1 else inside[-1]
 
 
-@pytest.mark.daily(2)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("model", "true", "noise"),
     [(power, (0.3, 0.4), 0.05), (product, (0.4, 0.5), 0.05), (added, (0.5, 0.6), 0.1), (offset_power, (0.25, 0.3, 0.3), 0.02)],
@@ -196,6 +196,7 @@ def test_bounds_are_proposed_also_if_data_cannot_be_reached_and_are_no_more_than
             assert emulator.interval(axis) == (None, None)
 
 
+@pytest.mark.slow
 def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_another() -> None:
     """It fails for high a; the interval of d ends where it works."""
     points, data = np.random.default_rng(4).random((10, 2)), power(np.array(0.4), np.array(0.4)) + 0.03 * (-1) ** X

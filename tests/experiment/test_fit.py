@@ -241,6 +241,7 @@ def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) 
         assert one["slope"] == pytest.approx(one["true slope"], abs=0.4)
 
 
+@pytest.mark.slow
 def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client: Any) -> None:
     """The range is a thousand times as wide as the interval."""
     line = LINE.replace("noise = 0.1", "noise = 0.0").replace("offset = 0.5", "offset = 0.9")
@@ -256,6 +257,7 @@ def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client:
     assert (slope.low, slope.high) == (pytest.approx(best - half, abs=half / 10), pytest.approx(best + half, abs=half / 10))
 
 
+@pytest.mark.slow
 def test_a_fit_of_no_more_means_than_parameters_ends_although_they_cannot_be_reached(tmp_path: Path, client: Any) -> None:
     """Sums of squares at candidates that are crowded at the end of the range are known to few digits."""
     text = LINE.replace("noise = 0.1", "noise = 0.0").replace("offset = 0.5", "offset = 4.0").replace("[1, 2, 3, 4, 5]", "[4]")
@@ -307,6 +309,7 @@ def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that
     assert result["fit"]["rmse"] <= min(one["rmse"] for one in result["tried"])
 
 
+@pytest.mark.slow
 def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, client: Any) -> None:
     line = LINE.replace("slope = 2.0", "slope = 1.0").replace("self.value = slope", "assert slope <= 1.2\n        self.value = slope")
     result = fit_of(tmp_path, client, "slope=0..3", line=line, options={"participants": 1}).run(STARTING + 10)

@@ -98,6 +98,7 @@ def test_a_recording_holds_what_it_felt(tmp_path: Path) -> None:
     assert {"move", "moved", "answer", "add"} <= kinds
 
 
+@pytest.mark.slow
 def test_a_recorded_run_of_a_model_file_is_replayed_byte_for_byte(tmp_path: Path) -> None:
     file, recording = tmp_path / "restless.py", tmp_path / "run.actr3d"
     building = """

@@ -106,6 +106,7 @@ def test_a_program_that_meddles_with_its_process_is_still_found_to_differ(does: 
     assert main(["replay", str(path)]) == (2 if "and os._exit" in does else 1)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_that_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mark = path.with_name("mark")

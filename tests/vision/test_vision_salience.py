@@ -64,6 +64,7 @@ def chance_of(observed: Sequence[int], expected: Sequence[float]) -> float:
     return math.erfc(math.sqrt(squares / 2)) if len(observed) == 2 else math.exp(-squares / 2)
 
 
+@pytest.mark.slow
 def test_the_choice_between_two_openings_follows_their_sizes() -> None:
     weights = saliences()
     assert weights.keys() == {1.2, 0.6}

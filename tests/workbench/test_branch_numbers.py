@@ -7,6 +7,8 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, call
 from tests.helpers.sessions import Desk, Talk
 from tests.workbench.test_curves import PUSHED
@@ -52,6 +54,7 @@ def branch_at(talk: Talk, client: Client, time: float) -> str:
     return new
 
 
+@pytest.mark.slow
 def test_a_branch_keeps_its_number_when_others_of_its_moment_are_deleted_and_restored(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED, record=True)
     client = Client(desk, tmp_path, talk.sessions)

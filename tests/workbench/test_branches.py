@@ -154,7 +154,7 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
 ASKED = r"what lies ahead, from 0\.1 s to [0-9.]+ s, would be lost(, and what follows would not be recorded|: it cannot be kept)"
 
 
-@pytest.mark.daily(4)
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("undone", [False, True])
 @pytest.mark.parametrize("failed", [True, False])
 @pytest.mark.parametrize("kind", RUNS)
@@ -223,6 +223,7 @@ def test_a_run_that_is_changed_on_a_full_disk_goes_on_unrecorded(kind: str, fail
         assert kept.event_count > 0, "what was recorded stays"
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", RUNS)
 def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(kind: str, desk: Desk, tmp_path: Path) -> None:
     source, _, below = RUNS[kind]
@@ -248,6 +249,7 @@ def test_an_opened_recording_that_is_changed_on_a_full_disk_goes_on_unrecorded(k
     assert (facts["recorded"], facts["recording"], facts["branched"]["recording"]) == (path.stem, None, path.stem)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", RUNS)
 def test_a_recording_is_opened_and_looked_at_although_no_file_can_be_written(
     kind: str, desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -277,6 +279,7 @@ def test_a_recording_is_opened_and_looked_at_although_no_file_can_be_written(
     talk.until("paused", time=0.5)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", RUNS)
 def test_an_opened_recording_that_goes_on_beyond_its_end_is_not_kept_if_no_file_can_be_written(
     kind: str, desk: Desk, tmp_path: Path

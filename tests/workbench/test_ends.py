@@ -112,6 +112,7 @@ def test_a_recording_that_is_run_again_ends_with_the_server(tmp_path: Path, sign
         asking.join(PATIENCE)
 
 
+@pytest.mark.slow
 def test_it_ends_while_a_model_waits_to_begin(tmp_path: Path) -> None:
     with served(tmp_path / "models") as running:
 

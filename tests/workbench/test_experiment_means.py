@@ -268,6 +268,7 @@ def drawn(random: Random, groups: Mapping[str, tuple[int, float]], conditions: S
     return rows
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(
     ("groups", "conditions"),
     [

@@ -284,6 +284,7 @@ def test_a_program_shows_how_far_it_has_come_on_its_way_to_an_earlier_time(desk:
     assert talk.until("ended")["events"] == events
 
 
+@pytest.mark.slow
 def test_a_program_can_be_paused_on_its_way_to_another_time(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     events = talk.state["events"]
@@ -345,6 +346,7 @@ def test_a_program_that_does_not_answer_on_its_way_is_ended_by_stop(desk: Desk, 
     talk.wait(lambda: not talk.session.alive)
 
 
+@pytest.mark.slow
 def test_steps_back_on_the_way_are_counted_from_where_the_user_goes(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     on_the_way(talk, 4.0)

@@ -119,6 +119,7 @@ def test_events_of_simulations_have_the_times_of_the_clock(desk: Desk, tmp_path:
     assert [time for time, _, kind, _ in talk.events if kind == "output"] == [50_000, 450_000, 650_000]
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("source", [TRIALS, TAKING_TURNS, WORLDS])
 def test_a_recording_of_a_program_counts_its_time_in_the_same_way(desk: Desk, tmp_path: Path, source: str) -> None:
     talk = desk.begin(tmp_path, source, seed=3, record=True)

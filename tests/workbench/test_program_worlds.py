@@ -155,6 +155,7 @@ def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(d
     assert told(talk) == seen[0.01]
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("source", "begun"), [(ONE, [0]), (TRIALS, [0.1, 0.5]), (UNSTEPPED, [0, 0.4])], ids=["one", "trials", "unstepped"])
 def test_a_recording_has_the_curves_of_the_simulations_of_its_program_opened_or_not(
     desk: Desk, tmp_path: Path, source: str, begun: list[float]
@@ -473,7 +474,7 @@ USES = (
 )
 
 
-@pytest.mark.daily(3)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("source", USES)
 def test_a_program_whose_simulation_is_made_in_another_file_stands_at_its_start_with_its_scene(
     desk: Desk, tmp_path: Path, source: str

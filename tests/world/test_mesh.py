@@ -151,6 +151,7 @@ def rest(tmp_path: Path, collision: str) -> float:
     return world.mj_data.body("ball").xpos[2]
 
 
+@pytest.mark.slow
 def test_a_ball_falls_into_a_ring_of_parts_lies_on_its_hull_and_passes_no_collision(tmp_path: Path) -> None:
     assert rest(tmp_path, "parts") == near(0.1, abs=5e-3)
     assert rest(tmp_path, "hull") == near(0.5, abs=5e-3)

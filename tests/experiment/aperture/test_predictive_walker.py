@@ -171,6 +171,7 @@ def test_before_a_doorway_that_has_closed_it_stops_and_gives_up(model: Any, caps
     assert result.time_s < 6 + model.PATIENCE[1] + 3
 
 
+@pytest.mark.slow
 def test_a_doorway_is_the_same_if_its_width_changes(model: Any, capsys: Any) -> None:
     for changed in (0.55, 2.0):
         with RunLimits(seed=1):
@@ -419,6 +420,7 @@ def test_going_back_and_on_gives_the_same_bytes(model: Any) -> None:
     assert simulation.result() == result
 
 
+@pytest.mark.slow
 def test_a_start_moved_by_hand_is_as_good_as_one_that_is_given(model: Any) -> None:
     given, _ = walked(model, aperture=0.8, start_aside=0.6, start_heading=10.0)
     with RunLimits(seed=1):
@@ -484,6 +486,7 @@ def sensitivity() -> Any:
     return load_text(SENSITIVITY.read_text(encoding="utf-8"), str(SENSITIVITY))
 
 
+@pytest.mark.slow
 def test_the_decision_alone_is_that_of_the_model(model: Any, sensitivity: Any) -> None:
     ratio = np.array([0.45 / 0.404])
     alone = sensitivity.Deciding().turns_before(0.404, ratio, speed=1.29).mean()

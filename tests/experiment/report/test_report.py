@@ -844,6 +844,7 @@ def test_the_original_is_named_only_beside_its_means(walked: Path, tmp_path: Pat
     assert not [part.note for part in parts if isinstance(part, Table) and logged in part.note]
 
 
+@pytest.mark.slow
 def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) -> None:
     """That of the first is not known, as it never turns; one of a single step of apertures is not known either."""
 

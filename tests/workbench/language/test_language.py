@@ -117,7 +117,7 @@ class Pole(Feature):
 """
 
 
-@pytest.mark.daily(6)
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("text", "first"),
     [
@@ -909,7 +909,7 @@ report(Base(), size=4)
 """
 
 
-@pytest.mark.daily(44)
+@pytest.mark.daily(22)
 @pytest.mark.parametrize(
     ("text", "why"),
     [
@@ -1100,6 +1100,7 @@ INHERITED = ("traced", "now", "stop", "explain")
 DERIVED = "class Derived(Base):\n    def lo|ok(self): pass\n"
 
 
+@pytest.mark.daily(24)
 @pytest.mark.parametrize(
     ("text", "name", "why"),
     [
