@@ -16,6 +16,8 @@ from tests.helpers.workbench_server import Served, served
 
 REFUSED = re.compile("Failed to load resource: the server responded with a status of 4(0[0-9]|22)")
 """What Chromium writes to its console of an answer that says why something is not done."""
+WAITING = re.compile(r"Blocked script execution in '[^']*/report/index\.html\b")
+"""What it writes when Playwright itself waits for something within a report, where no scripts run; a report has none of its own."""
 
 
 @pytest.fixture(scope="session")
@@ -81,9 +83,13 @@ def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> It
         workbench.post(f"/api/sessions/{session['id']}/close")
     complaints: list[str] = []
 
+    def note(complaint: str) -> None:
+        if not WAITING.match(complaint):
+            complaints.append(complaint)
+
     def note_unless_refused(complaint: str) -> None:
         if not REFUSED.match(complaint):
-            complaints.append(complaint)
+            note(complaint)
 
     def opened(
         model: str = "doorway.py",
@@ -96,7 +102,7 @@ def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> It
     ) -> Page:
         there = sorted(str(file.relative_to(workbench.folder)) for file in workbench.folder.rglob("*.py"))
         assert model in there, f"pages: the workbench has no model {model!r}; copy it into its folder first (it has {', '.join(there)})"
-        page = users.new(request.node.get_closest_marker("scene") is not None, note_unless_refused if refusals else complaints.append)
+        page = users.new(request.node.get_closest_marker("scene") is not None, note_unless_refused if refusals else note)
         page.set_viewport_size({"width": width, "height": height})
         page.emulate_media(color_scheme=theme)
         if tab is not None:

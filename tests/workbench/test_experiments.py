@@ -479,6 +479,7 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
     assert made == (folder / "index.html").stat().st_mtime
     answer = workbench.get(f"{path}/index.html")
     assert answer.content == (folder / "index.html").read_bytes()
+    assert re.search(r"<script|\bon\w+=|javascript:", answer.text) is None
     files = re.findall(r'href="((?:figures|tables)/[^"]+)"', answer.text)
     assert {file.rpartition(".")[2] for file in files} == {"svg", "png", "csv"}
     for file in files:
