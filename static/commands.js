@@ -1,6 +1,6 @@
 // The commands of the page, each registered once: the palette lists them, keys run them, the help and the titles of buttons name them.
 
-import { isThere } from "./needs.js";
+import { isAvailable } from "./needs.js";
 
 const known = [];
 const sources = [];
@@ -19,7 +19,7 @@ const sources = [];
 
 /** Registers a command, and returns it. It does not exist on a page without what it `needs` (needs.js): then nothing can run it. */
 export function command({ text, about = () => "", also = "", group, key = null, work, ready = () => true, why = () => "", needs = null }) {
-  const exists = isThere(needs);
+  const exists = isAvailable(needs);
   const made = { text, about, also, group, key, work, ready: exists ? ready : () => false, why };
   if (exists) known.push(made);
   return made;
@@ -32,7 +32,7 @@ export function command({ text, about = () => "", also = "", group, key = null, 
  * @param needs Without this they do not exist, as in `command`.
  */
 export function commandsOf(list, { read = () => {}, needs = null } = {}) {
-  if (isThere(needs)) sources.push({ list, read });
+  if (isAvailable(needs)) sources.push({ list, read });
 }
 
 /** Reads what the commands are about that depend on what is shown. */

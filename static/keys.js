@@ -1,7 +1,7 @@
 // The keys of the page: those of its commands, and those that work in some part of it only.
 
 import { commandOf, permanent, run } from "./commands.js";
-import { isThere } from "./needs.js";
+import { isAvailable } from "./needs.js";
 
 const notes = [];
 
@@ -10,7 +10,7 @@ export const KEY_GROUPS = ["Run", "Timeline", "3D view", "Panels", "Page", "Edit
 
 /** Lists a key that only works in some part of the page, which handles it itself; not on a page without what it needs (needs.js). */
 export function noteKey(key, text, group, needs = null) {
-  if (isThere(needs)) notes.push({ key, text, group });
+  if (isAvailable(needs)) notes.push({ key, text, group });
 }
 
 /** Returns the keys of a group with their texts. */

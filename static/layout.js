@@ -32,7 +32,7 @@ function ofKind(name, otherwise) {
 
 /** Whether this is the whole page: a window of its own has one panel. */
 const isWhole = addressed("panel") === null;
-const isThere = (area) => isWhole && area in AREAS && (area !== "scene" || hasWorld.value);
+const isAreaThere = (area) => isWhole && area in AREAS && (area !== "scene" || hasWorld.value);
 
 const notThere = (area) => (isWhole && area === "scene" ? "This model has no 3D view." : "This window shows one panel.");
 
@@ -48,7 +48,7 @@ export const swapped = remembered("swapped sides", false);
 const collapsed = ofKind("collapsed", []);
 const largest = remembered("maximised", ""); // a part; or none
 /** The part that fills the page; null for none. */
-export const maximised = computed(() => (isThere(largest.value) ? largest.value : null));
+export const maximised = computed(() => (isAreaThere(largest.value) ? largest.value : null));
 
 /** Returns whether a part is collapsed: a strip at the edge of the page. */
 export function isCollapsed(area) {
@@ -81,7 +81,7 @@ export const layoutCommands = Object.fromEntries(
   Object.entries(AREAS).map(([area, title]) => {
     const name = title === "3D view" ? title : title.toLowerCase();
     const named = (text, work, ready, why = () => "", key = null) =>
-      command({ text: `${text} the ${name}`, key, group: "Page", work, ready: () => isThere(area) && ready(), why: () => (isThere(area) ? why() : notThere(area)) });
+      command({ text: `${text} the ${name}`, key, group: "Page", work, ready: () => isAreaThere(area) && ready(), why: () => (isAreaThere(area) ? why() : notThere(area)) });
     return [
       area,
       {
@@ -94,6 +94,6 @@ export const layoutCommands = Object.fromEntries(
 );
 
 /** Swaps the 3D view and the panels. */
-export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isThere("scene"), why: () => notThere("scene") });
+export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isAreaThere("scene"), why: () => notThere("scene") });
 
 command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = ""), ready: () => maximised.value !== null, why: () => "No part is maximised." });

@@ -1,7 +1,7 @@
 // Assembles the page.
 
 import { html, render } from "./vendor/preact.js";
-import { complain } from "./store.js";
+import { notify } from "./store.js";
 import { Workbench } from "./workbench.js";
 
 const MAX_FAULTS = 10; // a fault repeated at each drawing would hide all other messages
@@ -12,7 +12,7 @@ function fault(text) {
   if (faults.has(text) || faults.size >= MAX_FAULTS) return;
   faults.add(text);
   const more = faults.size === MAX_FAULTS ? " There may be more, which are not shown. Reload the page; the run continues." : "";
-  complain(`The page has a fault: ${text}${more}`);
+  notify(`The page has a fault: ${text}${more}`);
 }
 
 // Nothing is wrong if a change of size causes another: the browser reports that one with the next picture.

@@ -7,7 +7,7 @@ import { addressed } from "./address.js";
 const THERE = { "models folder": addressed("session") === null };
 
 /** Returns whether this page has what something needs; null if it needs nothing. */
-export function isThere(need) {
+export function isAvailable(need) {
   if (need !== null && !(need in THERE)) throw new Error(`needs: must be one of ${Object.keys(THERE).join(", ")} (got ${need})`);
   return need === null || THERE[need];
 }

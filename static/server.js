@@ -2,7 +2,7 @@
 
 import { page } from "./address.js";
 import { frameBudget } from "./frame_budget.js";
-import { complain, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
+import { notify, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation, the camera's code is compiled, too, which takes up to a minute.";
 /** The delay before a new attempt to reach the workbench [ms]. */
@@ -210,14 +210,14 @@ function refused({ error, id, session: asked }) {
   if (reject) reject(new Error(error));
   else if (asked === undefined || asked !== shown || session.peek() === null) {
     if (asked === shown) opening.value = null;
-    complain(error);
+    notify(error);
   }
   else {
     const { model, recorded } = session.peek();
     leave();
     const why = `The run of ${model} was ended while this page had no connection`;
     const opened = recorded === null ? showModel(model) : showRecording(recorded);
-    opened.then(() => complain(`${why}. It is opened again, from its start.`), (problem) => complain(`${why}. It cannot be opened again: ${problem.message}`));
+    opened.then(() => notify(`${why}. It is opened again, from its start.`), (problem) => notify(`${why}. It cannot be opened again: ${problem.message}`));
   }
 }
 
@@ -270,5 +270,5 @@ export function request(what) {
 
 /** Sends a command whose result does not matter; shows errors among the messages, unless the page shows another run by now. */
 export function sendCommand(what) {
-  return request(what).catch((error) => isLeft(error) || complain(error.message));
+  return request(what).catch((error) => isLeft(error) || notify(error.message));
 }

@@ -149,7 +149,7 @@ let ownNotices = 0;
 
 /** Shows the user a problem found by the page itself, or something else; optionally with an action {text, work}, which can be taken once, and
  * the line {file, line} that it is about. */
-export function complain(text, level = "error", action = null, { file = null, line = null } = {}) {
+export function notify(text, level = "error", action = null, { file = null, line = null } = {}) {
   ownNotices -= 1;
   addNotices([{ number: ownNotices, level, text, file, line, detail: "", action }]);
 }

@@ -2,7 +2,7 @@
 
 import { addressed, page } from "./address.js";
 import { show } from "./server.js";
-import { complain, session } from "./store.js";
+import { notify, session } from "./store.js";
 import { computed, effect } from "./vendor/preact.js";
 
 const PATIENCE = 400; // how long a window waits for the page that has opened it [ms]
@@ -23,7 +23,7 @@ export function openWindow(id) {
   const address = new URLSearchParams(location.search);
   address.set("panel", id);
   address.set("page", page);
-  if (!open(`/?${address}`, `${page} ${id}`, `popup,width=${width},height=${height}`)) complain("The browser does not open a window: allow this page to.");
+  if (!open(`/?${address}`, `${page} ${id}`, `popup,width=${width},height=${height}`)) notify("The browser does not open a window: allow this page to.");
 }
 
 function announce() {

@@ -11,7 +11,7 @@ import "./changes/undo.js";
 import { command, run } from "./commands.js";
 import { Comparison } from "./compare/compare.js";
 import { noteKey } from "./keys.js";
-import { isThere } from "./needs.js";
+import { isAvailable } from "./needs.js";
 import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";
 import { goToTab, openTab } from "./open_tab.js";
 import { CommandPalette } from "./palette/palette.js";
@@ -24,7 +24,7 @@ import { Tabs } from "./parts/tabs.js";
 import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
-import { complain, hurried, session } from "./store.js";
+import { notify, hurried, session } from "./store.js";
 import { show } from "./server.js";
 import { alone, embedded, follow, openWindow } from "./windows.js";
 
@@ -32,7 +32,7 @@ const MIN_SCENE = 320; // [px]
 /** What a window can show alone. */
 const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, { title, View }])), scene: { title: "3D view", View: Scene }, timeline: { title: "Timeline", View: Timeline } };
 
-const TABS = PANELS.filter(({ needs = null }) => isThere(needs));
+const TABS = PANELS.filter(({ needs = null }) => isAvailable(needs));
 
 const onePanel = () => "This window shows one panel.";
 TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => goToTab(id), ready: () => alone === null, why: onePanel }));
@@ -84,7 +84,7 @@ function OnePanel() {
   const { title, View } = VIEWS[openTab.value] ?? PANELS[0];
   const model = session.value?.model ?? "";
   useEffect(() => {
-    listModels().catch((error) => complain(error.message));
+    listModels().catch((error) => notify(error.message));
     follow(begin);
   }, []);
   useEffect(() => void (document.title = `${title} · ${model}`), [title, model]);

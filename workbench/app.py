@@ -28,7 +28,7 @@ from workbench.language.language_server import LanguageServer
 from workbench.page_files import ROUTE, PageFiles
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
-from workbench.retention import Keeping, stands_alone
+from workbench.retention import RetentionLimits, is_complete
 from workbench.sessions import Sessions
 from workbench.trash import empty_trash
 from workbench.viser_bridge import Bridge
@@ -41,7 +41,7 @@ DAY = 86_400.0
 
 
 def make_app(
-    models: Path, gate: Gate, *, memory: int = MODEL_MEMORY, keeping: Keeping | None = None, fork_server: ForkServer | None = None
+    models: Path, gate: Gate, *, memory: int = MODEL_MEMORY, keeping: RetentionLimits | None = None, fork_server: ForkServer | None = None
 ) -> FastAPI:
     """Returns the application; its `state.leave` ends all runs and experiments.
 
@@ -72,7 +72,7 @@ def make_app(
         app.state.later = later
         workers.begin()
         closing = asyncio.Event()
-        tidying = asyncio.create_task(keep_tidy(sessions, keeping or Keeping(), closing))
+        tidying = asyncio.create_task(keep_tidy(sessions, keeping or RetentionLimits(), closing))
         yield
         closing.set()
         await leave()
@@ -102,7 +102,7 @@ def make_app(
     return app
 
 
-async def keep_tidy(sessions: Sessions, keeping: Keeping, closing: asyncio.Event) -> None:
+async def keep_tidy(sessions: Sessions, keeping: RetentionLimits, closing: asyncio.Event) -> None:
     """Tidies the folder of the workbench at its start, and deletes old deleted files each day, until it is closing."""
     await tidy(sessions, keeping)
     while True:
@@ -112,11 +112,11 @@ async def keep_tidy(sessions: Sessions, keeping: Keeping, closing: asyncio.Event
             return
 
 
-async def tidy(sessions: Sessions, keeping: Keeping) -> None:
+async def tidy(sessions: Sessions, keeping: RetentionLimits) -> None:
     """Deletes recordings beyond the limits, and unfinished files."""
     recordings = sessions.recordings
     for path in await asyncio.to_thread(recordings.all):
-        if not stands_alone(path):  # a killed process may have left it so, and then reading it completes the file
+        if not is_complete(path):  # a killed process may have left it so, and then reading it completes the file
             with suppress(Actr3dError, OSError):
                 await sessions.listing.one(path.stem)
     await asyncio.to_thread(recordings.tidy, keeping)

@@ -9,7 +9,7 @@ import numpy as np
 from mujoco import MjData, MjModel, mjtGeom
 
 from workbench.overlays.overlay import Lines
-from workbench.palette import channels, palette
+from workbench.scene_colours import channels, palette
 
 LIGHTS = (((-4.0, -6.0, 10.0), 2.4), ((-6.0, 6.0, 2.0), 2.0), ((6.0, 2.0, 3.0), 1.2))
 """The positions of the directional lights and their intensities: the first casts the shadows, the others brighten the sides.

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from workbench.auth import LOOPBACK, REFUSAL, Gate, Token
 from workbench.built_manual import build_manual
-from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, Keeping
+from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, RetentionLimits
 from workbench.shipped import models_folder
 from workbench.worker.memory import MODEL_MEMORY
 from workbench.worker.spawn import spawn
@@ -169,7 +169,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from workbench.app import make_app
         from workbench.server import serve
 
-        keeping = Keeping(number=options.recordings, megabytes=options.recordings_size)
+        keeping = RetentionLimits(number=options.recordings, megabytes=options.recordings_size)
         started = partial(_announce, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
         app = make_app(folder, gate, memory=options.memory, keeping=keeping, fork_server=fork_server)
         if interrupted.is_set():  # the import of a library may have swallowed the exception

@@ -26,7 +26,7 @@ from workbench.experiment_command import (
     TriedFacts,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.retention import stamp
+from workbench.retention import unique_suffix
 from workbench.sessions import PermissionNeededError, Sessions
 from workbench.trash import OWN, move_to_trash
 
@@ -302,7 +302,7 @@ class Experiments:
             OSError: If no process can be started.
         """
         argument = design_argument(self._models, wanted.design)
-        name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{stamp()}"
+        name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{unique_suffix()}"
         arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *wanted.options()]
         await self._begin(name, arguments, wanted.workers, new=True)
         return name

@@ -9,7 +9,7 @@ import numpy as np
 from mujoco import MjModel
 
 from actr3d.world import Mannequin
-from workbench.palette import channels, palette
+from workbench.scene_colours import channels, palette
 
 USUAL = np.array(Mannequin.colour[:3])
 """Red, green and blue of the clothes of a person for whom the model chooses none."""

@@ -7,7 +7,7 @@ import pickle
 from typing import Any
 
 from actr3d.errors import SimulationError
-from workbench.worker.messages import Do, Reply
+from workbench.worker.messages import CommandMessage, Reply
 from workbench.worker.workers import Worker
 
 MAX_WAITING = 200
@@ -39,7 +39,7 @@ class PendingRequests:
 
     def send(self, worker: Worker, said: Any, number: int = 0) -> None:
         """Sends a worker a command; without a number, nobody waits for the reply."""
-        worker.send(Do(id=number, command=pickle.dumps(said)))
+        worker.send(CommandMessage(id=number, command=pickle.dumps(said)))
 
     def take(self, reply: Reply) -> None:
         """Delivers a reply to its caller."""

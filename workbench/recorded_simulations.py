@@ -13,7 +13,7 @@ from actr3d.recording.schema import SIMULATION
 from actr3d.recording.writer import State
 from actr3d.world.compiled import from_bytes, from_text
 from workbench.program_time import timed
-from workbench.worker.state_history import MAX_SIMULATIONS, Past
+from workbench.worker.state_history import MAX_SIMULATIONS, StateHistory
 
 
 @dataclass(kw_only=True)
@@ -26,7 +26,7 @@ class RecordedSimulation:
     """The time at which it began, as the workbench counts it [us]."""
     facts: dict[str, Any]
     """What is recorded of it: `compiled`, `world` and `period_us`."""
-    past: Past = field(default_factory=Past)
+    past: StateHistory = field(default_factory=StateHistory)
     """Its states."""
 
     @property

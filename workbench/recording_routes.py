@@ -24,7 +24,7 @@ from workbench.open_file import OpenFile
 from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
 from workbench.recordings import Recordings
-from workbench.retention import erase, stands_alone
+from workbench.retention import erase, is_complete
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
 
@@ -175,7 +175,7 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
     """
     sessions = sessions_of(request)
     path = sessions.recordings.path(recording)
-    if form == "sqlite" and stands_alone(path):
+    if form == "sqlite" and is_complete(path):
         file = sessions.recordings.opened(recording)
     else:
         options = {"models": str(sessions.folder.root)} if form == "replay.html" else {}

@@ -15,7 +15,7 @@ from pathlib import Path
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.branch_numbers import BranchNumbers
 from workbench.labels import Labels
-from workbench.retention import Keeping, begun, companions, erase, is_open_elsewhere, stamp, superfluous, written
+from workbench.retention import RetentionLimits, begun, companions, erase, is_open_elsewhere, recordings_over_limit, unique_suffix, written
 from workbench.trash import OWN, move_to_trash, names_in_trash
 
 LEFTOVER = 86_400.0
@@ -63,7 +63,7 @@ class Recordings:
         if problem is not None:
             raise RecordingError(f"the folder '{self._folder}' cannot be written: {problem}")
         stem = re.sub(r"[^A-Za-z0-9_]", "_", model)[:60] or "model"
-        return self._folder / f"{stem}-{stamp()}.sqlite"
+        return self._folder / f"{stem}-{unique_suffix()}.sqlite"
 
     def path(self, name: str) -> Path:
         """Returns the path of a recording.
@@ -90,7 +90,7 @@ class Recordings:
         there = (*(path.name for path in self._folder.iterdir()), *names_in_trash(self._root))
         return {name.removesuffix(".sqlite") for name in there if name.endswith(".sqlite")}
 
-    def tidy(self, keeping: Keeping) -> None:
+    def tidy(self, keeping: RetentionLimits) -> None:
         """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.
 
         A recording that another server may still write is kept. What a killed process has left of unfinished files is deleted, too.
@@ -100,7 +100,7 @@ class Recordings:
                 path.unlink(missing_ok=True)
         if self.labels.problem is not None:
             return
-        erased = superfluous(self._files(), keeping, self.labels.all().keys())
+        erased = recordings_over_limit(self._files(), keeping, self.labels.all().keys())
         for path in erased:
             erase(path)
         self.labels.forget(path.stem for path in erased)

@@ -30,7 +30,7 @@ _BRANCH = re.compile(r"(.+)-at-(\d+\.\d+)s-\d{8}-\d{6}-[0-9a-f]{4}")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Keeping:
+class RetentionLimits:
     """Limits for the recordings that are kept."""
 
     number: int = MAX_RECORDINGS
@@ -39,7 +39,7 @@ class Keeping:
     """Maximum size of all recordings [MB]; 0 for no limit."""
 
 
-def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[str] = ()) -> list[Path]:
+def recordings_over_limit(files: Sequence[Path], keeping: RetentionLimits, labelled: Collection[str] = ()) -> list[Path]:
     """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled, and no run is writing.
 
     Args:
@@ -49,7 +49,7 @@ def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[st
     """
 
     def is_kept(path: Path) -> bool:
-        return not is_unnamed(path) or path.stem in labelled or not stands_alone(path)
+        return not is_unnamed(path) or path.stem in labelled or not is_complete(path)
 
     newest = sorted(files, key=written, reverse=True)
     number = size = 0
@@ -66,7 +66,7 @@ def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[st
     return found
 
 
-def stamp() -> str:
+def unique_suffix() -> str:
     """Returns the end of a new recording's name: the current time and a random number, as several may begin in one second."""
     return f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}"
 
@@ -114,14 +114,14 @@ def size_of(path: Path) -> int:
     return size
 
 
-def stands_alone(path: Path) -> bool:
+def is_complete(path: Path) -> bool:
     """Returns whether a recording has no companion files, as after a run that has ended normally."""
     return not any(each.exists() for each in companions(path))
 
 
 def is_open_elsewhere(path: Path) -> bool:
     """Returns whether another process has a recording open that is not yet complete: its writer, or for a moment a reader."""
-    if stands_alone(path):
+    if is_complete(path):
         return False
     with suppress(OSError), path.open("r+b") as file:
         try:
@@ -147,7 +147,7 @@ def new_branch(recording: Path, moment: float) -> Path:
         recording: The recording of the run.
         moment: The time at which the past was changed [s].
     """
-    return recording.with_name(f"{recording.stem}-at-{moment:.3f}s-{stamp()}{recording.suffix}")
+    return recording.with_name(f"{recording.stem}-at-{moment:.3f}s-{unique_suffix()}{recording.suffix}")
 
 
 def copied_from(name: str) -> tuple[str, float] | None:

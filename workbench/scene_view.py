@@ -18,7 +18,7 @@ from actr3d.world.compiled import from_bytes
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
 from workbench.curves import INTEGRATION
 from workbench.geom_colours import dress
-from workbench.overlays import OVERLAYS, Drawn, Overlay, ViewSettings
+from workbench.overlays import OVERLAYS, Overlay, OverlayCanvas, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.scene_framing import SceneFraming
 from workbench.viser_panel import Panel
@@ -56,7 +56,7 @@ class SceneView:
         self._look = session.look
         self._server: Any = None
         self._moments: Moments
-        self._scene: _Drawn | None = None
+        self._scene: _RunScene | None = None
         self._panel: Panel | None = None
         self._ready = asyncio.Event()
         """Set while the scene is that of the newest run, or cannot be drawn."""
@@ -160,7 +160,7 @@ class SceneView:
             with self._server.atomic():
                 self._server.scene.reset()
                 self._moments.begin()
-                self._scene = _Drawn(self._server, self._moments, facts, self._look, self._panel_for, self._said)
+                self._scene = _RunScene(self._server, self._moments, facts, self._look, self._panel_for, self._said)
 
     def _panel_for(self, apertures: dict[str, tuple[int, int]]) -> Panel:
         """Returns the panel: the one of the previous run if it has the same apertures, otherwise a new one."""
@@ -172,7 +172,7 @@ class SceneView:
         with self._lock, contextlib.suppress(Exception):
             self._server.stop()
 
-    def _draw(self, scene: _Drawn, state: State | None) -> None:
+    def _draw(self, scene: _RunScene, state: State | None) -> None:
         with self._lock, self._server.atomic():
             scene.look(self._look)
             if state is not None:
@@ -204,7 +204,7 @@ class SceneView:
             self._watch(self._session.state)
 
 
-class _Drawn:
+class _RunScene:
     """Draws the scene of one run.
 
     Args:
@@ -240,8 +240,8 @@ class _Drawn:
         self._scene.camera_tracking_enabled = False  # it would shift the world
         self._scene.set_refresh_handler(lambda: None)  # so that its own threads read no data
         server.scene.configure_environment_map(hdri=None)  # it takes much of the drawing time without a graphics card
-        drawn = Drawn(server, self._scene, self._model, world, send)
-        self._overlays: dict[str, Overlay] = {name: overlay(drawn) for name, overlay in OVERLAYS.items()}
+        canvas = OverlayCanvas(server, self._scene, self._model, world, send)
+        self._overlays: dict[str, Overlay] = {name: overlay(canvas) for name, overlay in OVERLAYS.items()}
         for name, shown in self._overlays.items():
             shown.show(name in look.shown)
         self._server, self._moments = server, moments
@@ -280,7 +280,7 @@ class _Drawn:
         self._scene.update_from_mjdata(self.data)
         for name, overlay in self._overlays.items():
             if overlay.visible or name == "frustum":
-                overlay.draw(self.data, state.drawn.get(name))
+                overlay.draw(self.data, state.overlay_data.get(name))
         self._panel.show(state)
         self._time = state.time
         self._send_now()

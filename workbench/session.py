@@ -22,16 +22,16 @@ from workbench.recordings import Recordings
 from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, is_there, start_of
 from workbench.worker.messages import (
     ENDED,
-    At,
     Branched,
-    Cut,
-    Draw,
+    EventsRemoved,
     Facts,
     FromWorker,
     Loaded,
-    News,
+    NewEvents,
     Notice,
+    Position,
     Reply,
+    SetOverlays,
     Start,
     State,
     Unrecorded,
@@ -219,9 +219,9 @@ class Session(Broadcast, Receiver):
                 self.changed(facts=True)
             case State() if shown:
                 self._take_state(launched, message)
-            case News() if shown:
+            case NewEvents() if shown:
                 self.log.add(message.first, message.events)
-            case Cut() if shown:
+            case EventsRemoved() if shown:
                 self.epoch += 1
                 self.log.cut(message.events)
                 self._cuts.append((self._notice_number, message.events))
@@ -243,7 +243,7 @@ class Session(Broadcast, Receiver):
             case Notice() if not shown or not self._was_given(message):
                 launched.unwritten = message.text if message.unwritten else launched.unwritten
                 self.add_notice(message, start)
-            case At():
+            case Position():
                 launched.stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
                 self.changed(facts=True)
             case _:
@@ -287,7 +287,7 @@ class Session(Broadcast, Receiver):
         self._cuts.clear()
         self._given.clear()
         if self._drawn:
-            launched.worker.send(Draw(kinds=self._drawn))
+            launched.worker.send(SetOverlays(kinds=self._drawn))
         self._notify_watchers(facts)
         self.changed(facts=True)
 
@@ -483,7 +483,7 @@ class Session(Broadcast, Receiver):
         if kinds != self._drawn:
             self._drawn = kinds
             if self._worker is not None:
-                self._worker.send(Draw(kinds=kinds))
+                self._worker.send(SetOverlays(kinds=kinds))
 
     def run_task(self, work: Coroutine[Any, Any, Any]) -> None:
         """Runs a coroutine in the background; it is cancelled when the session is closed."""
@@ -578,7 +578,7 @@ class Session(Broadcast, Receiver):
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
-            facts_of_session |= {"world": Raw(facts.world), "openings": Raw(facts.openings)}
+            facts_of_session |= {"world": Raw(facts.world), "initial_widths": Raw(facts.initial_widths)}
             facts_of_session |= {"changes": Raw(facts.changes), "live": Raw(facts.live)}
         return msgspec.json.encode(facts_of_session)
 

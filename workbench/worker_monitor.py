@@ -12,7 +12,7 @@ import msgspec
 from actr3d.runner.before_exit import signal_name
 from workbench.worker.channel import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
-from workbench.worker.messages import MAX_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
+from workbench.worker.messages import MAX_PRINTED, AskPosition, FromWorker, Notice, Position, Start, WorkerEnded, notice
 from workbench.worker.workers import LOST, PRINTED, Worker
 
 SILENT = 1.0
@@ -68,7 +68,7 @@ class WorkerMonitor:
         self._receiver = receiver
         self._heard = time.monotonic()
         self._given_up = 0.0
-        """The arrival of the last message before the worker did not even answer `Where`; each such silence is reported once."""
+        """The arrival of the last message before the worker did not even answer `AskPosition`; each such silence is reported once."""
 
     async def serve(self) -> None:
         """Starts the worker's job, passes on its messages, and reports how it ended, or that it was ended because serving it failed."""
@@ -115,7 +115,7 @@ class WorkerMonitor:
         try:
             while (message := await self._worker.receive()) is not None:
                 self._heard = time.monotonic()
-                over |= isinstance(message, Over)
+                over |= isinstance(message, WorkerEnded)
                 self._receiver.take(self._worker, self._start, message)
         except (ValueError, msgspec.MsgspecError) as error:
             self._receiver.add_notice(notice("error", f"the worker sent a malformed message and was ended ({error})"))
@@ -158,10 +158,10 @@ class WorkerMonitor:
                 continue
             silent = now - max(since, self._heard)
             if silent > SILENT:
-                self._worker.send(Where())
+                self._worker.send(AskPosition())
             if silent > SPEECHLESS and self._given_up != self._heard:
                 self._given_up = self._heard
-                self._receiver.take(self._worker, self._start, At(file=None, line=None))
+                self._receiver.take(self._worker, self._start, Position(file=None, line=None))
 
 
 def subject_of(start: Start) -> str:

@@ -56,7 +56,7 @@ DRAWS = 20
 
 Cell = tuple[tuple[str, Any], ...]
 """The conditions of a mean: names of columns and their values."""
-People = Mapping[str, Sequence[float]]
+ByParticipant = Mapping[str, Sequence[float]]
 """The values of a measure in a cell, by participant."""
 
 
@@ -163,7 +163,7 @@ class TriedCandidate:
 class _Simulated:
     """What a model has done."""
 
-    cells: Mapping[Cell, People]
+    cells: Mapping[Cell, ByParticipant]
     """The values of its trials by cell, without cells in which a trial failed."""
     failed: int
     trials: int
@@ -173,7 +173,7 @@ class _Simulated:
     @cached_property
     def means(self) -> dict[Cell, float]:
         """The means by cell."""
-        return {cell: mean_of(people) for cell, people in self.cells.items()}
+        return {cell: mean_of(participants) for cell, participants in self.cells.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -373,7 +373,7 @@ class Fit:
             distances: NDArray[np.float64] = np.linalg.norm(places - place, axis=1)
             distances[distances <= 1 / STEPS] = np.inf
             nearest = int(np.argmin(distances))
-            elsewhere: Mapping[Cell, People] = self._simulated[usable[nearest]].cells if np.isfinite(distances[nearest]) else {}
+            elsewhere: Mapping[Cell, ByParticipant] = self._simulated[usable[nearest]].cells if np.isfinite(distances[nearest]) else {}
             return [chance_error(found.cells[cell], elsewhere.get(cell, {})) for cell in self.target]
 
         at_candidates = [errors(self._simulated[n], place) for n, place in zip(usable, places, strict=True)]
@@ -459,7 +459,7 @@ class Fit:
                 run_experiment(experiment, store, self._client, show=show)
             columns = [name for name, _ in next(iter(self.target if target is None else target))]
             conditions = [name for name in columns if name == "group" or name in experiment.design.factors]
-            cells: dict[Cell, People] = {}
+            cells: dict[Cell, ByParticipant] = {}
             lost, failure = set[Cell](), ""
             if failed := store.failures:
                 for row in (row for row in store.rows() if row["error"] is not None):
@@ -724,7 +724,7 @@ def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> d
     return found
 
 
-def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, People]:
+def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, ByParticipant]:
     """Returns the values of a measure by cell and participant; nothing without values.
 
     Raises:
@@ -742,27 +742,27 @@ def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[
         wrong = next((name for name in (measure.name, *columns) if name not in known), None)
         if wrong is not None:
             raise ExperimentError(f"no trial has a value of '{wrong}'{alternatives(wrong, known, 'the columns are:')}")
-    return {cell: dict(people) for cell, people in found.items()}
+    return {cell: dict(participants) for cell, participants in found.items()}
 
 
-def mean_of(people: People) -> float:
+def mean_of(participants: ByParticipant) -> float:
     """Returns the mean of a cell, with participants as the unit: the mean of the participants' means."""
-    return fmean(map(fmean, people.values()))
+    return fmean(map(fmean, participants.values()))
 
 
-def chance_error(people: People, elsewhere: People) -> float:
+def chance_error(participants: ByParticipant, elsewhere: ByParticipant) -> float:
     """Returns the standard error of the mean of a cell that comes from chance in the model.
 
     All candidates have the same participants and conditions, so what these differ in cancels in the difference from another candidate: of
     the participants' means, or of the trials of a single participant. One trial does not show chance: 0.
 
     Args:
-        people: The values of the cell, in the order of trials.
+        participants: The values of the cell, in the order of trials.
         elsewhere: Its values at another candidate, near enough that the model does nearly the same.
     """
-    pairs = [(fmean(people[one]), fmean(elsewhere[one])) for one in people.keys() & elsewhere.keys()]
+    pairs = [(fmean(participants[one]), fmean(elsewhere[one])) for one in participants.keys() & elsewhere.keys()]
     if len(pairs) == 1:
-        pairs = [pair for one in people.keys() & elsewhere.keys() for pair in zip(people[one], elsewhere[one], strict=False)]
+        pairs = [pair for one in participants.keys() & elsewhere.keys() for pair in zip(participants[one], elsewhere[one], strict=False)]
     return stdev(here - there for here, there in pairs) / math.sqrt(2 * len(pairs)) if len(pairs) > 1 else 0.0
 
 

@@ -5,7 +5,7 @@ import { Button } from "../parts/button.js";
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
 import { isLeft, request } from "../server.js";
-import { complain, session } from "../store.js";
+import { notify, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
 import { runTimeText } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
@@ -26,7 +26,7 @@ export async function change(what) {
 
 /** Does the same, but shows an error among the messages. */
 export function sendChange(what) {
-  return change(what).catch((error) => isLeft(error) || complain(error.message));
+  return change(what).catch((error) => isLeft(error) || notify(error.message));
 }
 
 const MAX_SHOWN = 50; // the number of notices remembered

@@ -7,7 +7,7 @@ import { exactTime, TIMES, timeText } from "../parts/units.js";
 import { AGAIN, call, connect, request, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
-import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
+import { alive, notify, connected, isShared, running, session, shownRecording } from "../store.js";
 import { furthest, isBeyond, present, runTimeText, travel } from "../timeline/seek.js";
 import { alone, followWindows, passOn } from "../windows.js";
 
@@ -54,7 +54,7 @@ export async function choose(path) {
   try {
     if (await showModel(path)) passOn({ model: path, recorded: null });
   } catch (error) {
-    complain(error.message);
+    notify(error.message);
   }
 }
 
@@ -106,9 +106,9 @@ async function chooseMoment(run, time) {
       end();
       if (!wanted()) return;
       if (exactTime(present.peek()) === exactTime(time)) return;
-      if (isBeyond(time)) return complain(`The link leads to ${timeText(time)}; this run has only reached ${runTimeText(furthest.peek())}.`);
+      if (isBeyond(time)) return notify(`The link leads to ${timeText(time)}; this run has only reached ${runTimeText(furthest.peek())}.`);
       const why = running.peek() ? "It goes on now." : isShared.peek() ? "Another page shows it, too." : null;
-      if (why) complain(`The link leads to ${runTimeText(time)} of this run. ${why}`, "info", { text: "Go there", work: () => travel(time) });
+      if (why) notify(`The link leads to ${runTimeText(time)} of this run. ${why}`, "info", { text: "Go there", work: () => travel(time) });
       else travel(time);
     });
   });
@@ -122,7 +122,7 @@ async function chooseAddressed(id) {
   const text = addressed("t");
   const isShown = await chooseRecording(id);
   if (text !== null && isShown) {
-    complain(`The link's time must be a time, such as ${TIMES} (got ${text}).`);
+    notify(`The link's time must be a time, such as ${TIMES} (got ${text}).`);
     leaveMoment();
   }
   return isShown;
@@ -134,7 +134,7 @@ export const before = signal(null);
 /** Shows an open session; a session of a recording has the recording's address. */
 export function showSession({ model: path, recorded }) {
   if (recorded === null) return choose(path);
-  return chooseRecording(recorded).catch((error) => complain(error.message));
+  return chooseRecording(recorded).catch((error) => notify(error.message));
 }
 
 /** Returns the open sessions other than one, of each model or recording the newest, which `showSession` shows. */
@@ -166,7 +166,7 @@ export function note(path) {
 /** Shows what the address names, after «back» or «forward». */
 function follow() {
   const [run, path] = [addressed("run"), addressed("model")];
-  if (run !== null) chooseAddressed(run).catch((error) => complain(error.message));
+  if (run !== null) chooseAddressed(run).catch((error) => notify(error.message));
   else if (path !== null) choose(path);
 }
 
@@ -193,7 +193,7 @@ export async function begin() {
     await listModels();
   } catch (error) {
     if (error.status === 0) setTimeout(begin, AGAIN); // the status line shows that there is no connection
-    else complain(error.message);
+    else notify(error.message);
     return;
   }
   if (model.value !== null) return; // the user has already chosen one
@@ -208,8 +208,8 @@ export async function begin() {
   }
   const paths = models.value.map(({ path }) => path);
   if (paths.length === 0) {
-    complain(NO_MODELS, "info");
-    if (problem !== null) complain(problem);
+    notify(NO_MODELS, "info");
+    if (problem !== null) notify(problem);
     return;
   }
   const asked = addressed("model");
@@ -220,7 +220,7 @@ export async function begin() {
     leaveMoment();
   }
   await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
-  if (problem !== null) complain(problem); // only now, because messages are cleared with the session shown before
+  if (problem !== null) notify(problem); // only now, because messages are cleared with the session shown before
 }
 
 export function ModelChoice() {

@@ -6,11 +6,11 @@ import { keyText, buttonTitle } from "../keys.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
-import { isThere } from "../needs.js";
+import { isAvailable } from "../needs.js";
 import { request, sendCommand } from "../server.js";
 import { chooseRecording } from "./models.js";
 import { isOver, isRestarting, runStatus } from "../run_status.js";
-import { alive, complain, running, session, state } from "../store.js";
+import { alive, notify, running, session, state } from "../store.js";
 import { sendCommandThere } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
 import { bindFaster, speedIsKnown } from "./pace.js";
@@ -37,7 +37,7 @@ function toggle() {
 /** Runs a recording from its start, as it was recorded; a new run would use the model's current text. One that was stopped is opened again. */
 async function runAgain() {
   const { alive: lives, recorded } = session.value;
-  if (!lives) return chooseRecording(recorded, { run: true }).catch((error) => complain(error.message));
+  if (!lives) return chooseRecording(recorded, { run: true }).catch((error) => notify(error.message));
   await sendCommand({ type: "seek", time: 0 });
   return sendCommand({ type: "run" });
 }
@@ -51,7 +51,7 @@ const BUTTONS = [
   { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" }, needs: "models folder" },
 ];
 
-const shownButtons = BUTTONS.filter(({ needs = null }) => isThere(needs));
+const shownButtons = BUTTONS.filter(({ needs = null }) => isAvailable(needs));
 
 /** Whether a button is disabled; its key is then disabled too. */
 function isIdle(id) {

@@ -11,7 +11,7 @@ import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
 import { isOver, runStatus } from "../run_status.js";
 import { request } from "../server.js";
-import { alive, complain, session, state } from "../store.js";
+import { alive, notify, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
@@ -150,7 +150,7 @@ export async function askAndMake(one, given = {}) {
     }
     const { made, problem: found } = await make(one.word, named);
     problem.value = found;
-    if (closed && found) complain(`${one.title}: ${found}`);
+    if (closed && found) notify(`${one.title}: ${found}`);
     return made;
   };
   choose();

@@ -4,7 +4,7 @@ import { change } from "../bar/branch.js";
 import { command } from "../commands.js";
 import { isLeft } from "../server.js";
 import { runStatus } from "../run_status.js";
-import { alive, complain, events } from "../store.js";
+import { alive, notify, events } from "../store.js";
 import { commandText, isOfUser } from "../timeline/commands.js";
 import { present } from "../timeline/seek.js";
 import { changes } from "./changes.js";
@@ -24,7 +24,7 @@ async function undo() {
   try {
     await change({ type: "undo" });
   } catch (error) {
-    if (!isLeft(error)) complain(error.message);
+    if (!isLeft(error)) notify(error.message);
   }
 }
 

@@ -3,7 +3,7 @@
 import { diff } from "../vendor/codemirror.js";
 import { asked } from "../parts/dialog.js";
 import { counted } from "../parts/count.js";
-import { complain } from "../store.js";
+import { notify } from "../store.js";
 import { focusText, goToPosition } from "./code.js";
 import { open } from "./documents.js";
 import { askAbout } from "./language.js";
@@ -13,7 +13,7 @@ async function answered(document, ask, name) {
   try {
     return await askAbout(document.state, ask, document.state.selection.main.head, name);
   } catch (error) {
-    complain(error.message, "error", null, error.line ? { file: document.path, line: error.line } : {});
+    notify(error.message, "error", null, error.line ? { file: document.path, line: error.line } : {});
     return null;
   }
 }
@@ -45,7 +45,7 @@ export async function rename(document) {
     if (!name || name === found.name) return focusText();
     try {
       const { changes, unchanged } = await askAbout(state, "rename", state.selection.main.head, name);
-      if (document.state.doc !== state.doc) return complain("Nothing was renamed: the text has changed meanwhile.");
+      if (document.state.doc !== state.doc) return notify("Nothing was renamed: the text has changed meanwhile.");
       document.change({ changes: changes.map(([from, to]) => ({ from, to, insert: name })), userEvent: "input.rename" });
       const starts = unchanged.map((line) => document.state.doc.line(line).from);
       document.unchanged.value = starts.length > 0 ? { word: found.name, places: changes.length, starts } : null;

@@ -3,7 +3,7 @@
 import { effect, untracked } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { call } from "../server.js";
-import { complain, isPresent, notices, session } from "../store.js";
+import { notify, isPresent, notices, session } from "../store.js";
 import { reveal } from "./code.js";
 import { documents, LARGEST, watching } from "./documents.js";
 import { markAt, marking, withMarks } from "./marks.js";
@@ -41,7 +41,7 @@ export async function checkByLoading(document) {
     document.note.value = problems.length === 0 && document.state.doc === doc ? fine : "";
   } catch (error) {
     document.note.value = "";
-    complain(error.message);
+    notify(error.message);
   }
 }
 

@@ -3,7 +3,7 @@
 import { signal } from "../vendor/preact.js";
 import { listModels } from "../bar/models.js";
 import { call } from "../server.js";
-import { complain } from "../store.js";
+import { notify } from "../store.js";
 import { freshState, watchText } from "./code.js";
 import * as drafts from "./drafts.js";
 import { marksOf, sameMarks } from "./marks.js";
@@ -216,7 +216,7 @@ export function save(document, over = undefined) {
 
 async function saveNow(document, over) {
   if (new TextEncoder().encode(document.text).length > LARGEST) {
-    complain(`${document.path} was not saved: the size of a model file must be <= ${LARGEST.toLocaleString("en")} bytes.`);
+    notify(`${document.path} was not saved: the size of a model file must be <= ${LARGEST.toLocaleString("en")} bytes.`);
     return false;
   }
   document.saving.value = true;
@@ -247,7 +247,7 @@ async function write(document, over) {
   } catch (error) {
     document.since = before.compose(document.since);
     if (error.status === 409) await look(document, true).catch(() => {});
-    if (!document.theirs.value) complain(error.message);
+    if (!document.theirs.value) notify(error.message);
     return false;
   }
 }

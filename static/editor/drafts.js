@@ -2,7 +2,7 @@
 
 import { signal } from "../vendor/preact.js";
 import { ownName } from "../address.js";
-import { complain } from "../store.js";
+import { notify } from "../store.js";
 
 const PREFIX = "actr3d.draft.";
 const LOCK = "actr3d.tab.";
@@ -70,7 +70,7 @@ let warned = false;
 export function keep(path, text, version) {
   if (!write(keyOf(path), { path, text, version, at: Date.now() }) && !warned) {
     warned = true;
-    complain(`The browser has no room to keep the unsaved text of ${path}: save it before you leave the page.`, "warning");
+    notify(`The browser has no room to keep the unsaved text of ${path}: save it before you leave the page.`, "warning");
   }
   refresh();
 }

@@ -4,7 +4,7 @@ import { before, choose, listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { call, sinceNow } from "../server.js";
-import { complain, session } from "../store.js";
+import { notify, session } from "../store.js";
 import { focusText } from "./code.js";
 import { close, open, renamed, shown } from "./documents.js";
 import { TEMPLATES } from "./templates.js";
@@ -56,7 +56,7 @@ export async function remove(path, unsaved) {
     offerRestore(`The model «${path}» is`, [trash], listModels);
     await listModels();
   } catch (error) {
-    complain(error.message);
+    notify(error.message);
   }
 }
 
@@ -75,7 +75,7 @@ async function named(title, label, name, action, more, work) {
     }
     try {
       const file = await work(name, choice);
-      await listModels().catch((error) => complain(error.message));
+      await listModels().catch((error) => notify(error.message));
       return file;
     } catch (error) {
       problem = error.message;

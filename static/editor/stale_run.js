@@ -3,7 +3,7 @@
 import { computed, html } from "../vendor/preact.js";
 import { runModel } from "../bar/models.js";
 import { sinceNow } from "../server.js";
-import { complain, notices, session } from "../store.js";
+import { notify, notices, session } from "../store.js";
 import { documents, save, shown } from "./documents.js";
 import { openTab } from "../open_tab.js";
 
@@ -12,7 +12,7 @@ export async function saveAndRun(document) {
   const wanted = sinceNow();
   if ((document.dirty.value || document.theirs.value) && !(await save(document))) return;
   if (!wanted()) return; // during the save, the user has chosen to show something else
-  await runModel(document.path).catch((error) => complain(error.message));
+  await runModel(document.path).catch((error) => notify(error.message));
 }
 
 /** Returns a notice if the run that is shown is not one of the file's text, or that text is not saved: {text, failed, gone, unsaved, path};
@@ -35,7 +35,7 @@ export const former = computed(() => {
 /** Runs the new text of the file of the run that is shown. */
 export function runNew(path) {
   const open = documents.value.get(path);
-  return open ? saveAndRun(open) : runModel(path).catch((error) => complain(error.message));
+  return open ? saveAndRun(open) : runModel(path).catch((error) => notify(error.message));
 }
 
 /** Shows in the status line that the run is not one of the text in the editor, with a button to run that one. */

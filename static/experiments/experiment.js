@@ -8,7 +8,7 @@ import { Icon } from "../parts/icon.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
-import { useFacts, useFresh } from "./answer.js";
+import { useFacts, usePolled } from "./polling.js";
 import { Figure } from "./figure.js";
 import { canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment, waitOf } from "./list.js";
 import { Trials } from "./trials.js";
@@ -88,7 +88,7 @@ function Report({ address }) {
 
 function Contents({ experiment, facts, error }) {
   const path = pathOf(experiment.id);
-  const columns = useFresh(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
+  const columns = usePolled(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
   if (facts === null && error !== null) return html`<p class="part problem bad" role="alert">The experiment cannot be read: ${error}</p>`;
   if (facts === null) return html`<p class="part empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
   if (part.value === "about") return html`<${About} experiment=${experiment} facts=${facts} />`;

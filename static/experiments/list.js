@@ -7,7 +7,7 @@ import { openTab } from "../open_tab.js";
 import { withTrust } from "../runs/trust.js";
 import { call, isLeft, sinceNow } from "../server.js";
 import { chooseRecording } from "../bar/models.js";
-import { complain, session } from "../store.js";
+import { notify, session } from "../store.js";
 import { effect, signal, untracked } from "../vendor/preact.js";
 import { experimentText } from "./wording.js";
 
@@ -98,7 +98,7 @@ async function doing(id, text, work, cancel = null) {
   try {
     return (await work()) !== null;
   } catch (error) {
-    if (!isLeft(error) && !cancel?.signal.aborted) complain(error.message);
+    if (!isLeft(error) && !cancel?.signal.aborted) notify(error.message);
     return false;
   } finally {
     waits.value = { ...waits.value, [id]: null };
@@ -137,7 +137,7 @@ export async function makeReport(experiment) {
     part.value = "report";
   };
   if (shown.value === id) part.value = "report";
-  else complain(`The report of ${experimentText(experiment)} is made.`, "info", { text: "Open it", work: show });
+  else notify(`The report of ${experimentText(experiment)} is made.`, "info", { text: "Open it", work: show });
 }
 
 /** Runs a trial again, records it, and shows the recording, unless the user has chosen something else meanwhile. */
@@ -153,7 +153,7 @@ export function openTrial(id, number) {
       if (made === null) return null;
       opened.value = { id, number, recording: made.recording };
       if (wanted()) await chooseRecording(made.recording);
-      else complain(`Trial ${number} was run again and recorded as ${made.recording}: it is among the runs.`, "info");
+      else notify(`Trial ${number} was run again and recorded as ${made.recording}: it is among the runs.`, "info");
       return made;
     },
     cancel,

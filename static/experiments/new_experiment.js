@@ -60,7 +60,7 @@ const measured = ({ seconds_a_trial: seconds, error }) => ({ seconds, error: err
 
 /** Reads the facts of a design, and then how long a trial takes [s]: the server measures it once for each version of the design's files. Returns
  * {facts, seconds, error}. */
-function useFacts(design) {
+function useDesignFacts(design) {
   const found = useSignal({ of: "", ...UNKNOWN });
   const current = () => (found.value.of === design ? found.value : UNKNOWN);
   useEffect(() => {
@@ -269,7 +269,7 @@ export function NewExperiment() {
   const wanted = isPicked.value || own.includes(last) ? last : (own[0] ?? last);
   const chosen = wanted ?? designs.find(({ file }) => file !== null) ?? designs[0];
   const design = chosen?.id ?? "";
-  const usual = useFacts(design);
+  const usual = useDesignFacts(design);
   return html`
     <div class="tools">
       <button class="bare" title="All experiments" onClick=${() => (shown.value = "")}><span class="back"><${Icon} name="right" /></span>Experiments</button>

@@ -13,7 +13,7 @@ import { valueText } from "../parts/chunk.js";
 import { Inline } from "../parts/prose.js";
 import { call, isLeft, sendCommand } from "../server.js";
 import { isOver, runStatus } from "../run_status.js";
-import { complain, session, state } from "../store.js";
+import { notify, session, state } from "../store.js";
 
 /** The declarations in the text that the form is for: that of a recording, or else that of the model's file. */
 const listing = signal(null);
@@ -47,7 +47,7 @@ async function follow({ id, model, run, digest, gone, recorded }) {
   } catch (error) {
     if (of !== asked) return;
     listing.value ??= { parameters: [] };
-    complain(error.message);
+    notify(error.message);
   }
 }
 
@@ -107,7 +107,7 @@ async function write(parameter, text, whole) {
     await change({ type: "set", name, value });
     if (run === of && drafts.value[name] === text) drop(name); // otherwise more was typed meanwhile
   } catch (error) {
-    if (!isLeft(error)) complain(error.message);
+    if (!isLeft(error)) notify(error.message);
   }
 }
 

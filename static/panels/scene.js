@@ -19,7 +19,7 @@ import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
 import { runTimeText } from "../timeline/seek.js";
 import { openWindow } from "../windows.js";
-import { alive, complain, hasScene, running, session, state } from "../store.js";
+import { alive, notify, hasScene, running, session, state } from "../store.js";
 
 const open = signal(false); // whether the list of overlays is shown
 const view = remembered("view", "follow");
@@ -111,7 +111,7 @@ async function makeVideo() {
     const { askForVideo } = await import("../video/dialog.js"); // only few visits need it
     await askForVideo();
   } catch (error) {
-    complain(error.message);
+    notify(error.message);
   }
 }
 

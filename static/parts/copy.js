@@ -1,7 +1,7 @@
 // A button that copies text to the clipboard, and confirms it on itself.
 
 import { html, useEffect, useState } from "../vendor/preact.js";
-import { complain } from "../store.js";
+import { notify } from "../store.js";
 import { Button } from "./button.js";
 import { dialog } from "./dialog.js";
 import { Icon } from "./icon.js";
@@ -20,7 +20,7 @@ export async function copyText(text, otherwise = "Nothing was copied") {
     await navigator.clipboard.writeText(wanted);
     return true;
   } catch (error) {
-    complain(`${otherwise}: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
+    notify(`${otherwise}: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
     return false;
   }
 }

@@ -3,7 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { open } from "../editor/documents.js";
-import { isThere } from "../needs.js";
+import { isAvailable } from "../needs.js";
 import { openTab } from "../open_tab.js";
 
 const PLACE = /^(\s*File ")(.+)(", line )(\d+)(.*)$/;
@@ -16,7 +16,7 @@ export function openAt(path, line) {
 
 /** Returns the name of a file in the models folder; null if it is not there. */
 function inFolder(file) {
-  if (!isThere("models folder")) return null;
+  if (!isAvailable("models folder")) return null;
   const root = `${folder.value}/`;
   if (folder.value && file.startsWith(root)) return file.slice(root.length);
   return file.startsWith("/") || file.startsWith("<") || /^\w:/.test(file) ? null : file;

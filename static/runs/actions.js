@@ -6,7 +6,7 @@ import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { call, sendFile, sinceNow } from "../server.js";
-import { complain, me, session } from "../store.js";
+import { notify, me, session } from "../store.js";
 import { forgetRun, listRuns, runs } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
@@ -29,7 +29,7 @@ export async function openRun(run, at = null) {
     await leaveOthers(run.id);
     if (wanted()) await chooseRecording(run.id, { at });
   } catch (error) {
-    complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
+    notify(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
   }
   busy.value = null;
 }
@@ -57,7 +57,7 @@ export async function addFiles(files) {
       const name = file.name.slice(-100); // the end of a name differs most
       added.push(await sendFile(`/api/recordings/import?name=${encodeURIComponent(name)}`, file));
     } catch (error) {
-      complain(`${file.name} is not added to the recordings: ${error.message}`);
+      notify(`${file.name} is not added to the recordings: ${error.message}`);
     }
   }
   busy.value = null;
@@ -127,7 +127,7 @@ export async function deleteRuns(all) {
   const open = all.filter((run) => run.session);
   if (open.length > 0) {
     const names = open.map(nameOf).join("; ");
-    complain(`Not deleted: an open run still writes ${names}. Show and restart that run, then delete it.`);
+    notify(`Not deleted: an open run still writes ${names}. Show and restart that run, then delete it.`);
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");
@@ -149,7 +149,7 @@ export async function deleteRuns(all) {
   busy.value = null;
   const done = new Set(list.map(({ id }) => id));
   chosen.value = new Set([...chosen.value].filter((id) => !done.has(id))); // others may have been chosen meanwhile
-  if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
+  if (refused.length > 0) notify(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
   if (deleted.length > 0) {
     const what = deleted.length === 1 ? `The recording «${nameOf(deleted[0].run)}» is` : `${counted(deleted.length, "recording")} are`;
     offerRestore(what, deleted.map(({ trash }) => trash), listRuns);

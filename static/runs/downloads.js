@@ -3,7 +3,7 @@
 import { html, signal, useEffect, useSignal } from "../vendor/preact.js";
 import { saveFile } from "../parts/picture.js";
 import { fetchFile } from "../server.js";
-import { complain } from "../store.js";
+import { notify } from "../store.js";
 import { nameOf, sizeText } from "./wording.js";
 
 const FORMATS = [
@@ -40,7 +40,7 @@ export async function download(run, format, title) {
     const blob = await fetchFile(`/api/recordings/${run.id}/file?form=${format}`, cancel.signal, (come, all) => note(key, { come, all }));
     saveFile(key, blob);
   } catch (error) {
-    if (!cancel.signal.aborted) complain(`Not downloaded: ${text}: ${error.message}`);
+    if (!cancel.signal.aborted) notify(`Not downloaded: ${text}: ${error.message}`);
   }
   cancels.delete(key);
   downloads.value = downloads.value.filter((one) => one.key !== key);

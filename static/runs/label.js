@@ -3,7 +3,7 @@
 import { dialog } from "../parts/dialog.js";
 import { Problem } from "../parts/problem.js";
 import { call } from "../server.js";
-import { complain } from "../store.js";
+import { notify } from "../store.js";
 import { html, signal } from "../vendor/preact.js";
 import { listRuns } from "./list.js";
 
@@ -15,7 +15,7 @@ export async function labelRun(run) {
   try {
     known = await call("GET", path);
   } catch (error) {
-    complain(`It cannot be named: ${error.message}`);
+    notify(`It cannot be named: ${error.message}`);
     return;
   }
   let before = known.label;

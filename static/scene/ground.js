@@ -1,7 +1,7 @@
 // The ground and the sky of the 3D view: the colours of the theme, a horizon, and soft shadows under objects, which cost little even if
 // the processor draws.
 
-import { palette } from "./palette.js";
+import { palette } from "./colours.js";
 
 const MAX_SHADOWS = 64; // the maximum number of shadows
 const LIFT = 0.004; // their height above the ground [m]

@@ -4,7 +4,7 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
-import { isThere } from "../needs.js";
+import { isAvailable } from "../needs.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { timeText } from "../parts/units.js";
@@ -15,7 +15,7 @@ import { sameUntil, treeOf } from "../runs/tree.js";
 import { nameInTree, outcomeText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
-import { complain, session, shownRecording as shown } from "../store.js";
+import { notify, session, shownRecording as shown } from "../store.js";
 import { computed, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { commandText } from "./commands.js";
 import { placeOf } from "./draw.js";
@@ -28,7 +28,7 @@ const MAX_CHARACTERS = 300; // of the change that a tooltip shows
 const open = remembered("branches open", true);
 
 /** Those of the present run; none without a models folder, from which they would be opened. */
-const tree = computed(() => (isThere("models folder") ? treeOf(runs.value ?? [], shown.value) : []));
+const tree = computed(() => (isAvailable("models folder") ? treeOf(runs.value ?? [], shown.value) : []));
 
 /** Returns the newest time of a run of the tree [s]; of the one that is shown, the list may not have it yet. */
 function endOf(run) {
@@ -43,7 +43,7 @@ async function show(run) {
   try {
     if (run.session && (await chooseLive(run.id))) return;
   } catch (error) {
-    complain(error.message);
+    notify(error.message);
     return;
   }
   await openRun(run, sameUntil(runs.value ?? [], run.id, shown.value));

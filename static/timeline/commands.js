@@ -33,9 +33,9 @@ const cm = (width) => String(Number((100 * width).toFixed(1)));
 
 /** Returns the width of an aperture or the value of a model's parameter at the start of its run as text; undefined for other values. */
 function startOf({ of, parameter }, [, source, , command]) {
-  const { openings, parameters } = session.peek() ?? {};
+  const { initial_widths: initialWidths, parameters } = session.peek() ?? {};
   if (of === "aperture") {
-    const [, widths] = openings?.findLast(([first]) => first <= runOf(source)) ?? [];
+    const [, widths] = initialWidths?.findLast(([first]) => first <= runOf(source)) ?? [];
     const width = widths?.[named(command).name];
     return width === undefined ? undefined : cm(width);
   }

@@ -5,7 +5,7 @@
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
 import { isLeft, request } from "../server.js";
-import { alive, complain, hurried, running, session, state, way } from "../store.js";
+import { alive, notify, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { exactTime } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
@@ -341,7 +341,7 @@ async function ask() {
   try {
     again = (await askOnce()) || again;
   } catch (error) {
-    if (alive.peek() && !isLeft(error)) complain(`the curves: ${error.message}`);
+    if (alive.peek() && !isLeft(error)) notify(`the curves: ${error.message}`);
     again = isLeft(error);
   }
   setTimeout(() => {

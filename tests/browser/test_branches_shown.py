@@ -347,7 +347,7 @@ def reached(page: Page, name: str) -> list[str]:
 def offer(page: Page) -> Locator:
     """Makes the page show a message with an action; returns it."""
     page.evaluate(
-        """async () => (await part("store.js")).complain("It is in the trash folder.", "info", { text: "Restore", work: () => {} })"""
+        """async () => (await part("store.js")).notify("It is in the trash folder.", "info", { text: "Restore", work: () => {} })"""
     )
     toast = page.locator(".toast")
     expect(toast).to_be_visible()

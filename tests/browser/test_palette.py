@@ -264,7 +264,7 @@ def test_the_palette_sets_parameters_clears_messages_and_switches_to_other_open_
     search(page, "set speed 9")  # more than it may be
     expect(options(page).filter(has_text="Set speed to 9")).to_have_count(0)
     page.keyboard.press("Escape")
-    page.evaluate("""async () => (await part("store.js")).complain("something")""")
+    page.evaluate("""async () => (await part("store.js")).notify("something")""")
     search(page, "clear messages")
     page.keyboard.press("Enter")
     expect(page.locator(".messages .empty")).to_contain_text("No messages")

@@ -16,7 +16,7 @@ from tests.helpers.walkers import STRUCK
 from tests.workbench.test_recorded_runs import APERTURE, agrees, ended, recording
 from workbench.curves import NOTHING
 from workbench.exports import curves_of
-from workbench.worker.state_history import Past
+from workbench.worker.state_history import StateHistory
 from workbench.worker.stop_conditions import Contact
 
 PUSHED = """from actr3d.actr import *
@@ -231,7 +231,7 @@ def test_of_a_long_past_every_second_state_is_left_out_and_no_contact() -> None:
     def touching(force: float) -> dict[Contact, float]:
         return {("walker", "hand", "wall"): force}
 
-    past = Past()
+    past = StateHistory()
     contacts = {17: touching(2.0), 18: touching(3.0), 24: touching(1.0), 97: touching(4.0), 198: touching(5.0)}
     for tick in range(200):
         past.add(tick, state(tick), contacts.get(tick, {}))

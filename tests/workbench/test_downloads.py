@@ -31,7 +31,7 @@ from workbench.app import make_app
 from workbench.csv_files import state_columns
 from workbench.curves import INTEGRATION
 from workbench.readers import Readers, ReadingError
-from workbench.retention import stands_alone
+from workbench.retention import is_complete
 
 
 @pytest.fixture(autouse=True)
@@ -118,7 +118,7 @@ def test_what_is_taken_of_a_run_that_has_ended_is_replayed_while_its_session_is_
     talk = desk.begin(tmp_path, HELPED.replace("from helper import WORD", 'WORD = "go"'), record=True)
     events = ended(talk)["events"]
     name = talk.facts["recording"]
-    assert not stands_alone(talk.sessions.recordings.path(name))
+    assert not is_complete(talk.sessions.recordings.path(name))
     talk.wait(lambda: talk.summary(name).events == events)
     path = taken(desk, tmp_path, name)
     done = subprocess.run([sys.executable, "-m", "actr3d", "replay", str(path)], capture_output=True, text=True, check=False)

@@ -25,7 +25,7 @@ from tests.workbench.test_runs import firing, written
 from workbench import listing, recording_routes
 from workbench.app import make_app
 from workbench.readers import Readers, ReadingError
-from workbench.retention import Keeping
+from workbench.retention import RetentionLimits
 from workbench.worker.messages import LONGEST
 
 ENDLESS = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)"
@@ -237,7 +237,7 @@ def test_a_recording_file_is_added_and_kept_but_none_of_its_code_is_run(
     assert recordings.path(added["id"]).read_bytes() == data
     names = [json.loads(add(name, [data]).body)["id"] for name in ("far.sqlite", "../é b.sqlite", "..")]
     assert names == ["far-2", "___b", "recording"]
-    recordings.tidy(Keeping(number=1))
+    recordings.tidy(RetentionLimits(number=1))
     assert {path.stem for path in recordings.all()} == {"far", added["id"], *names}
     assert post(desk, app, f"/recordings/{added['id']}/open").status == 403
     assert not foreign()

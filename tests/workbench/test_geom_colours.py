@@ -12,7 +12,7 @@ from actr3d.world import Car, Floor, Load, Mannequin, Scene, Wall
 from actr3d.world.compiled import from_bytes, to_bytes
 from actr3d.world.world import World
 from workbench.geom_colours import colour_of_object, dress
-from workbench.palette import channels, palette
+from workbench.scene_colours import channels, palette
 
 
 def test_each_agent_after_the_first_has_its_own_colour_in_shades_and_the_rest_stays() -> None:

@@ -114,7 +114,7 @@ def told(shown: SimulationDisplay) -> dict[str, Any]:
     parts: dict[str, Any] = {}
     for mind in shown.simulation.agents.values():
         parts |= snapshot_of(mind)
-    drawn = {kind: _plain(value) for kind, value in shown.drawn(KINDS).items()}
+    drawn = {kind: _plain(value) for kind, value in shown.overlay_data(KINDS).items()}
     now: dict[str, Any] = {"physics": physics.hex(), "apertures": apertures, "parts": parts, "result": shown.result()}
     now |= {f"drawn {kind}": value for kind, value in drawn.items()}
     now |= {"touches": sorted(shown.touches()), "time": shown.simulation.time}

@@ -82,7 +82,7 @@ def told(talk: Talk) -> dict[str, Any]:
     assert session.state is not None
     assert session.facts is not None
     now = {name: state[name] for name in ("tick", "time", "apertures", "parts", "events")}
-    drawn = {kind: repr(value) for kind, value in session.state.drawn.items()}
+    drawn = {kind: repr(value) for kind, value in session.state.overlay_data.items()}
     now |= {"physics": session.state.physics, "drawn": drawn, "world": session.facts.world, "mj_model": session.facts.mj_model}
     asked: list[dict[str, Any]] = [{"type": "explain"}, {"type": "events"}]
     asked += [{"type": kind, "body": "walker"} for kind in ("view", "body")] if session.state.physics is not None else []
@@ -121,16 +121,16 @@ def test_pages_know_the_widths_at_the_start_of_every_simulation(desk: Desk, tmp_
     widths = TRIALS.replace("(0.6, 0.9)", "(0.6, 0.6, 0.9)").replace("run(0.4)", "run(0.01)")
     talk = desk.begin(tmp_path, widths, run=True, wait="ended")
     known = [[2, {"aperture": 0.6}], [4, {"aperture": 0.9}]]
-    assert talk.facts["openings"] == known
+    assert talk.facts["initial_widths"] == known
     talk.say("seek", time=0.1)
     talk.until("paused", time=0.1)
-    assert talk.facts["openings"] == known, "events that lie ahead are shown, too"
+    assert talk.facts["initial_widths"] == known, "events that lie ahead are shown, too"
 
 
 def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, ONE)
     draw(talk)
-    talk.wait(lambda: talk.session.state is not None and talk.session.state.drawn)
+    talk.wait(lambda: talk.session.state is not None and talk.session.state.overlay_data)
     seen = {0.0: told(talk)}
     for ticks in (1, 20, 7):
         talk.say("step", ticks=ticks)

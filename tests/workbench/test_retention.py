@@ -23,7 +23,7 @@ from tests.helpers.sessions import Desk
 from workbench import app
 from workbench.labels import Label, Labels
 from workbench.recordings import Recordings
-from workbench.retention import Keeping, is_unnamed, stands_alone
+from workbench.retention import RetentionLimits, is_complete, is_unnamed
 from workbench.trash import OWN, NotInTrashError, TrashError, empty_trash, move_to_trash, restore_from_trash
 
 COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
@@ -69,11 +69,11 @@ def test_a_run_in_a_folder_that_cannot_be_written_is_shown_and_not_kept(desk: De
 
 
 def test_the_oldest_go(recordings: Recordings, tmp_path: Path) -> None:
-    recordings.tidy(Keeping(number=10, megabytes=0))
+    recordings.tidy(RetentionLimits(number=10, megabytes=0))
     assert len(models(tmp_path)) == 10
-    recordings.tidy(Keeping(number=3, megabytes=0))
+    recordings.tidy(RetentionLimits(number=3, megabytes=0))
     assert models(tmp_path) == ["model7", "model8", "model9"]
-    recordings.tidy(Keeping(number=0, megabytes=0))
+    recordings.tidy(RetentionLimits(number=0, megabytes=0))
     assert len(models(tmp_path)) == 3
 
 
@@ -81,7 +81,7 @@ def test_the_largest_part_of_a_folder_goes_too(recordings: Recordings, tmp_path:
     big = recordings.new("big")
     big.write_bytes(bytes(1_500_000))
     os.utime(big, (1005, 1005))
-    recordings.tidy(Keeping(number=0, megabytes=1))
+    recordings.tidy(RetentionLimits(number=0, megabytes=1))
     assert "big" not in models(tmp_path)
     assert len(models(tmp_path)) == 10
 
@@ -89,14 +89,14 @@ def test_the_largest_part_of_a_folder_goes_too(recordings: Recordings, tmp_path:
 def test_what_a_user_has_named_stays(recordings: Recordings, tmp_path: Path) -> None:
     oldest = min((tmp_path / OWN / "recordings").glob("*.sqlite"), key=lambda path: path.stat().st_mtime)
     oldest.rename(oldest.with_name("kept.sqlite"))
-    recordings.tidy(Keeping(number=2, megabytes=0))
+    recordings.tidy(RetentionLimits(number=2, megabytes=0))
     assert models(tmp_path) == ["kept", "model9"]
 
 
 def test_what_another_server_writes_stays(recordings: Recordings, tmp_path: Path) -> None:
     oldest = min((tmp_path / OWN / "recordings").glob("*.sqlite"), key=lambda path: path.stat().st_mtime)
     oldest.with_name(f"{oldest.name}-wal").touch()
-    recordings.tidy(Keeping(number=2, megabytes=0))
+    recordings.tidy(RetentionLimits(number=2, megabytes=0))
     assert models(tmp_path) == ["model0", "model9"]
 
 
@@ -190,7 +190,7 @@ def test_old_deleted_files_are_removed_while_the_workbench_runs_on(desk: Desk, t
 
     async def wait() -> None:
         closing = asyncio.Event()
-        keeping = asyncio.create_task(app.keep_tidy(sessions, Keeping(), closing))
+        keeping = asyncio.create_task(app.keep_tidy(sessions, RetentionLimits(), closing))
         for _ in range(3):
             old.mkdir(parents=True)
             while old.exists():
@@ -219,7 +219,7 @@ def test_unfinished_files_of_killed_processes_are_removed_the_next_day(recording
         (folder / name).touch()
         if "new" not in name:
             os.utime(folder / name, (1000, 1000))
-    recordings.tidy(Keeping())
+    recordings.tidy(RetentionLimits())
     assert sorted(path.name for path in folder.glob(".*")) == [".labels.json.lock", ".new.sqlite.part"]
     assert len(models(tmp_path)) == 10
 
@@ -231,8 +231,8 @@ def test_a_recording_that_a_killed_process_has_left_is_completed_when_the_workbe
     for end in ("", "-wal"):
         shutil.copy(path.with_name(path.name + end), copy.with_name(copy.name + end))
     desk.do(talk.session.stop())
-    assert not stands_alone(copy)
-    desk.do(app.tidy(talk.sessions, Keeping()))
+    assert not is_complete(copy)
+    desk.do(app.tidy(talk.sessions, RetentionLimits()))
     assert {each.name for each in path.parent.glob("*.sqlite*")} == {path.name, copy.name}
 
 

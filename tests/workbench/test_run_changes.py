@@ -21,7 +21,7 @@ from workbench.exports import curves_of
 from workbench.labels import Label
 from workbench.program_time import timed_events
 from workbench.recordings import Recordings
-from workbench.retention import Keeping, copied_from
+from workbench.retention import RetentionLimits, copied_from
 
 AGENT = counter_text("PMNoise(noise=0.3)")
 PROGRAM = AGENT + "\nfirst = Counter()\nfirst.run(0.4)\nsecond = Counter()\nsecond.run(3)\nprint('over')\n"
@@ -257,8 +257,8 @@ def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> Non
     for wrong in ({"name": "x" * 101}, {"note": "x" * 2001}, {"tags": ["x"] * 21}, {"tags": ["x" * 41]}, {"names": "x"}):
         assert label(**wrong).status == 422
     assert post("nothing", {}).status == 404
-    recordings.tidy(Keeping(number=0, megabytes=0))
-    recordings.tidy(Keeping(number=1))
+    recordings.tidy(RetentionLimits(number=0, megabytes=0))
+    recordings.tidy(RetentionLimits(number=1))
     assert name in recordings.labels.all()
     recordings.delete(name)
     assert recordings.labels.all() == {}
@@ -316,9 +316,9 @@ def test_a_damaged_file_of_labels_is_kept_and_nothing_is_deleted_without_it(tmp_
     assert str(recordings.labels.problem).startswith(
         "The names, notes and tags of recordings cannot be read from labels.json (it is damaged: "
     )
-    recordings.tidy(Keeping(number=1))
+    recordings.tidy(RetentionLimits(number=1))
     recordings.labels.change(other.stem, {"note": "new"})
-    recordings.tidy(Keeping(number=1))
+    recordings.tidy(RetentionLimits(number=1))
     assert (path.exists(), other.exists()) == (True, True)
     (aside,) = path.parent.glob("labels-damaged-*.json")
     assert aside.read_text(encoding="utf-8") == damaged
@@ -327,7 +327,7 @@ def test_a_damaged_file_of_labels_is_kept_and_nothing_is_deleted_without_it(tmp_
     assert recordings.labels.all() == {other.stem: Label(note="new")}
     aside.unlink()
     assert recordings.labels.problem is None
-    recordings.tidy(Keeping(number=1))
+    recordings.tidy(RetentionLimits(number=1))
     assert (path.exists(), other.exists()) == (False, True)
 
 

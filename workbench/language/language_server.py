@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from workbench.language.answers import LanguageError
-from workbench.worker.messages import Do, FromWorker, Notice, Reply, Start
+from workbench.worker.messages import CommandMessage, FromWorker, Notice, Reply, Start
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import Receiver, WorkerMonitor
 
@@ -76,7 +76,7 @@ class LanguageServer(Receiver):
             await asyncio.sleep(0)  # it sends the start, which comes first
         self._number += 1
         self._reply = asyncio.get_running_loop().create_future()
-        worker.send(Do(id=self._number, command=question))
+        worker.send(CommandMessage(id=self._number, command=question))
         try:
             return await asyncio.wait_for(self._reply, limit)
         except TimeoutError:

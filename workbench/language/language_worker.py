@@ -11,7 +11,7 @@ import actr3d
 from actr3d.errors import Actr3dError
 from workbench.language.answers import LanguageError
 from workbench.worker.channel import Channel
-from workbench.worker.messages import Do, Leave, Reply, shortened
+from workbench.worker.messages import CommandMessage, Leave, Reply, shortened
 
 
 def serve(channel: Channel) -> None:
@@ -23,7 +23,7 @@ def serve(channel: Channel) -> None:
     assistant = Assistant(PythonAnswers(Path(channel.start.folder)))
     decoder = msgspec.json.Decoder(LanguageQuestion)
     while not isinstance(request := channel.receive(), Leave):
-        if isinstance(request, Do):
+        if isinstance(request, CommandMessage):
             try:
                 answer = assistant.answer(decoder.decode(request.command))
                 channel.post(Reply(id=request.id, result=msgspec.json.encode(answer)))

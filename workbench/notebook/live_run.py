@@ -17,7 +17,7 @@ from workbench.loader import listing_of
 from workbench.worker.change_menu import change_menu
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
-from workbench.worker.messages import Facts, Over
+from workbench.worker.messages import Facts, WorkerEnded
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.simulation_display import SimulationDisplay
 from workbench.worker.simulation_run import ENDINGS, SimulationRun
@@ -84,10 +84,10 @@ class LiveRun(SimulationRun):
 
     def _first_facts(self) -> Facts:
         simulation, shown = self._simulation, self._shown
-        world, openings = to_json(shown.world()).encode(), to_json([(1, shown.openings)]).encode()
+        world, initial_widths = to_json(shown.world()).encode(), to_json([(1, shown.initial_widths)]).encode()
         seed, period = simulation.seed, simulation.period
         changes = change_menu(agents_only=False)
-        known = {"parameters": b"{}", "world": world, "openings": openings, "changes": changes}
+        known = {"parameters": b"{}", "world": world, "initial_widths": initial_widths, "changes": changes}
         return Facts(kind="simulation", seed=seed, period=period, mj_model=shown.mj_model, **known)
 
     # -- what cells do
@@ -173,12 +173,12 @@ class LiveRun(SimulationRun):
 
 def _end(channel: Channel, wire: socket.socket) -> None:
     """Ends the connection of a simulation that is no more, and its threads."""
-    channel.post(Over())
+    channel.post(WorkerEnded())
     channel.flush(0.2)
     with suppress(OSError):
         wire.shutdown(socket.SHUT_RDWR)
     wire.close()
-    channel.post(Over())  # cannot be sent, which ends the thread that tries
+    channel.post(WorkerEnded())  # cannot be sent, which ends the thread that tries
 
 
 def _stay(_: int) -> None:

@@ -24,7 +24,7 @@ from workbench.cli import listen
 from workbench.server import serve
 from workbench.session import Session
 from workbench.sessions import Sessions
-from workbench.worker.messages import FromWorker, Leave, Over
+from workbench.worker.messages import FromWorker, Leave, WorkerEnded
 from workbench.worker.workers import LOST, Worker
 
 LONGEST = 65_536
@@ -46,11 +46,11 @@ class NotebookWorker(Worker):
         return cls(0, reader, writer, (nothing_printed, writer.transport))
 
     async def receive(self) -> FromWorker | None:
-        """Returns the next message; `Over` and then None if the simulation or the kernel has ended."""
+        """Returns the next message; `WorkerEnded` and then None if the simulation or the kernel has ended."""
         message = await super().receive()
         if message is None and not self.exit.done():
             self.kill()
-            return Over()  # a kernel that is restarted has no time to say so
+            return WorkerEnded()  # a kernel that is restarted has no time to say so
         return message
 
     async def stop(self) -> None:

@@ -4,8 +4,8 @@ What only the worker of a run needs is imported in `data`, because the server st
 """
 
 from actr3d.registry import import_modules
-from workbench.overlays.overlay import OVERLAYS, Drawn, Observed, Overlay, ViewSettings
+from workbench.overlays.overlay import OVERLAYS, Observed, Overlay, OverlayCanvas, ViewSettings
 
 import_modules(__name__, __path__)
 
-__all__ = ["OVERLAYS", "Drawn", "Observed", "Overlay", "ViewSettings"]
+__all__ = ["OVERLAYS", "Observed", "Overlay", "OverlayCanvas", "ViewSettings"]

@@ -6,15 +6,15 @@ from typing import Any
 
 from mujoco import MjData
 
-from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+from workbench.overlays.overlay import Observed, Overlay, OverlayCanvas, overlay
 
 
 @overlay("contacts", "contacts", shown=True)
 class Contacts(Overlay):
     """Shows the contact points and the contact forces. The scene of viser draws them."""
 
-    def __init__(self, drawn: Drawn) -> None:
-        self._scene = drawn.scene
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        self._scene = canvas.scene
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
@@ -22,7 +22,7 @@ class Contacts(Overlay):
         del observed
         return {}
 
-    def draw(self, data: MjData, drawn: Any) -> None:
+    def draw(self, data: MjData, by_body: Any) -> None:
         """Does nothing: the scene draws them."""
 
     def switch(self) -> None:

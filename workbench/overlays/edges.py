@@ -8,7 +8,7 @@ import numpy as np
 from mujoco import MjData
 
 from workbench.overlays.contours import contours_of, into_world
-from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
+from workbench.overlays.overlay import Lines, Observed, Overlay, OverlayCanvas, overlay
 
 if TYPE_CHECKING:
     from actr3d.camera import CameraParameters
@@ -23,8 +23,8 @@ NEARER = 0.995
 class Edges(Overlay):
     """Shows the edges in the current view of each eye, at their distances."""
 
-    def __init__(self, drawn: Drawn) -> None:
-        self._lines = Lines(drawn.server, "/overlays/edges", COLOUR, 2.5)
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        self._lines = Lines(canvas.server, "/overlays/edges", COLOUR, 2.5)
         self._lines.show(False)
 
     @staticmethod
@@ -33,10 +33,10 @@ class Edges(Overlay):
         bodies = observed.simulation.world.bodies
         return {name: _edges(body, observed.eyesight(name)) for name, body in bodies.items() if body.eye is not None}
 
-    def draw(self, data: MjData, drawn: dict[str, bytes] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, bytes] | None) -> None:
         """Draws the edges that are seen now."""
-        if drawn is not None:
-            self._lines.set(np.frombuffer(b"".join(drawn.values()), dtype=np.float32).reshape(-1, 2, 3))
+        if by_body is not None:
+            self._lines.set(np.frombuffer(b"".join(by_body.values()), dtype=np.float32).reshape(-1, 2, 3))
 
     def switch(self) -> None:
         """Shows or hides the edges."""

@@ -10,7 +10,7 @@ import numpy as np
 from mujoco import MjData
 
 from workbench.overlays.contours import Places, into_world, points_of
-from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
+from workbench.overlays.overlay import Lines, Observed, Overlay, OverlayCanvas, overlay
 from workbench.time_text import time_text
 
 if TYPE_CHECKING:
@@ -38,8 +38,8 @@ class Features(Overlay):
     Features that received attention have thick lines, other noticed features thin ones.
     """
 
-    def __init__(self, drawn: Drawn) -> None:
-        server = drawn.server
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        server = canvas.server
         self._chosen = Lines(server, "/overlays/features/chosen", (217, 138, 31), 4.0)
         self._noticed = Lines(server, "/overlays/features/noticed", (150, 120, 60), 2.0)
         self.switch()
@@ -50,11 +50,11 @@ class Features(Overlay):
         agents, bodies = observed.simulation.agents, observed.simulation.world.bodies
         return {name: drawn_features(agents[name], body) if name in agents else [] for name, body in bodies.items()}
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, Any] | None) -> None:
         """Draws the features found last, at the positions where they were found."""
-        if drawn is None:
+        if by_body is None:
             return
-        found = [feature for features in drawn.values() for feature in features]
+        found = [feature for features in by_body.values() for feature in features]
         for lines, chosen in ((self._chosen, True), (self._noticed, False)):
             parts = [line for feature in found if feature["chosen"] is chosen for line in feature["lines"]]
             lines.set(np.array(parts, dtype=np.float32).reshape(-1, 2, 3))

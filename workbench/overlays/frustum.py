@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 
-from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+from workbench.overlays.overlay import Observed, Overlay, OverlayCanvas, overlay
 
 SCALE = 0.6
 """Length of the drawn pyramid [m]."""
@@ -22,10 +22,10 @@ COLOUR = (91, 127, 166)
 class Frustum(Overlay):
     """Shows the field of view of each eye."""
 
-    def __init__(self, drawn: Drawn) -> None:
-        model = drawn.model
-        self._server = drawn.server
-        bodies = {name: drawn.world["bodies"][name] for name in (*drawn.world["agents"], *drawn.world["bodies"])}
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        model = canvas.model
+        self._server = canvas.server
+        bodies = {name: canvas.world["bodies"][name] for name in (*canvas.world["agents"], *canvas.world["bodies"])}
         eyes = {name: body["eye"] for name, body in bodies.items() if body["eye"] is not None}
         self.sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, eye) for name, eye in eyes.items()}
         """The site numbers of the eyes, by body; those of agents first."""
@@ -41,10 +41,10 @@ class Frustum(Overlay):
         seeing = [name for name, body in observed.simulation.world.bodies.items() if body.eye is not None]
         return {name: [observed.eyesight(name).horizontal_fov, observed.eyesight(name).vertical_fov] for name in seeing}
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, Any] | None) -> None:
         """Moves the frustums with the eyes. An eye's x axis points forward and z up; a frustum's z axis points forward and y down."""
         for number, (name, site) in enumerate(self.sites.items()):
-            field = (drawn or {}).get(name)
+            field = (by_body or {}).get(name)
             if field is not None and tuple(field) != self.fields.get(name):
                 self.fields[name] = field[0], field[1]
                 aspect = math.tan(field[0] / 2) / math.tan(field[1] / 2)

@@ -9,7 +9,7 @@ from typing import Any
 from mujoco import MjData
 
 from actr3d.world.frames import yaw_in, yaw_quaternion
-from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+from workbench.overlays.overlay import Observed, Overlay, OverlayCanvas, overlay
 from workbench.page_commands.changes import SimulationCommand
 
 SIZE = 0.8
@@ -25,8 +25,8 @@ class Handles(Overlay):
     The thing moves when its handle is released. This is a user's change like any other: it is recorded, and can be undone.
     """
 
-    def __init__(self, drawn: Drawn) -> None:
-        self._server, self._send = drawn.server, drawn.send
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        self._server, self._send = canvas.server, canvas.send
         self._handles: dict[str, Any] = {}
         self._held: set[str] = set()
 
@@ -36,9 +36,9 @@ class Handles(Overlay):
         objects = observed.simulation.world.objects
         return {name: list(objects.pose(name)) for name in objects.names}
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, Any] | None) -> None:
         """Draws the handles; one that is being dragged stays where it is."""
-        for name, (x, y, heading) in (drawn or {}).items():
+        for name, (x, y, heading) in (by_body or {}).items():
             handle = self._handles.get(name) or self._add(name)
             if name not in self._held:
                 handle.position = (x, y, ABOVE)

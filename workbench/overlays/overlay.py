@@ -20,7 +20,7 @@ OVERLAYS: Registry[type[Overlay]] = Registry("overlay")
 """All overlays by name, in the order of the menu."""
 
 
-class Drawn(NamedTuple):
+class OverlayCanvas(NamedTuple):
     """The 3D view that an overlay draws in."""
 
     server: Any
@@ -52,7 +52,7 @@ class Overlay(ABC):
     the server.
 
     Args:
-        drawn: The 3D view to draw in.
+        canvas: The 3D view to draw in.
     """
 
     name: ClassVar[str]
@@ -65,7 +65,7 @@ class Overlay(ABC):
     a measured `line` [m]; each browser places them where they cover nothing."""
 
     @abstractmethod
-    def __init__(self, drawn: Drawn) -> None: ...
+    def __init__(self, canvas: OverlayCanvas) -> None: ...
 
     @staticmethod
     @abstractmethod
@@ -73,12 +73,12 @@ class Overlay(ABC):
         """Returns what is to be drawn now, by body; called only while the overlay is shown. The state of the physics is not part of it."""
 
     @abstractmethod
-    def draw(self, data: MjData, drawn: Any) -> None:
+    def draw(self, data: MjData, by_body: Any) -> None:
         """Draws the overlay for the current state.
 
         Args:
             data: The current state, with up-to-date geometry.
-            drawn: The worker's data by body; None if there is none yet, for example just after the overlay was switched on.
+            by_body: The worker's data by body; None if there is none yet, for example just after the overlay was switched on.
         """
 
     def show(self, visible: bool) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from mujoco import MjData
 
-from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
+from workbench.overlays.overlay import Lines, Observed, Overlay, OverlayCanvas, overlay
 
 HEIGHT = 0.012
 """Height of the line above the floor [m], so that it is visible."""
@@ -19,8 +19,8 @@ class Path(Overlay):
     """Shows the path of each body from the start of the run to the present, whether or not anyone watched, with a gap where it was moved by
     hand."""
 
-    def __init__(self, drawn: Drawn) -> None:
-        self._lines = Lines(drawn.server, "/overlays/path", (230, 120, 30), 3.0)
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        self._lines = Lines(canvas.server, "/overlays/path", (230, 120, 30), 3.0)
         self._lines.show(False)
 
     @staticmethod
@@ -28,12 +28,12 @@ class Path(Overlay):
         """Returns the pieces of each body's path: positions of its root on the floor [m]."""
         return observed.paths()
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, Any] | None) -> None:
         """Draws the paths up to the present."""
-        if drawn is None:
+        if by_body is None:
             return
         pieces = [np.zeros((0, 2, 3), dtype=np.float32)]
-        for piece in chain.from_iterable(drawn.values()):
+        for piece in chain.from_iterable(by_body.values()):
             places = np.full((len(piece), 3), HEIGHT, dtype=np.float32)
             places[:, :2] = piece
             pieces.append(np.stack((places[:-1], places[1:]), axis=1))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mujoco import MjData, mjtJoint
 
-from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+from workbench.overlays.overlay import Observed, Overlay, OverlayCanvas, overlay
 from workbench.overlays.posture import Copies
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ ABOVE = 0.05
 class Plans(Overlay):
     """Shows the plan of each agent that has a method `planned`; see `actr3d.motor.Plan`."""
 
-    def __init__(self, drawn: Drawn) -> None:
-        self._copies = Copies(drawn, "/overlays/plan", (217, 138, 31))
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        self._copies = Copies(canvas, "/overlays/plan", (217, 138, 31))
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
@@ -33,9 +33,9 @@ class Plans(Overlay):
         plans = {name: _plan_of(agents[name]) for name in bodies if name in agents}
         return {name: _drawn(plan, bodies[name]) for name, plan in plans.items() if plan is not None}
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, Any] | None) -> None:
         """Draws copies and labels."""
-        plans = (drawn or {}).values()
+        plans = (by_body or {}).values()
         self._copies.draw(data, [target for plan in plans for target in plan["targets"]])
         self.labels = [{"text": plan["text"], "place": plan["place"], "chosen": False} for plan in plans if plan["text"]]
         self.switch()

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from mujoco import MjData
 
-from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+from workbench.overlays.overlay import Observed, Overlay, OverlayCanvas, overlay
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
@@ -22,13 +22,13 @@ class Copies:
     """Translucent copies of the parts of bodies that would be elsewhere in another posture.
 
     Args:
-        drawn: The 3D view.
+        canvas: The 3D view.
         name: Their name in viser's tree.
         colour: Red, green, blue, 0 to 255.
     """
 
-    def __init__(self, drawn: Drawn, name: str, colour: tuple[int, int, int]) -> None:
-        self._server, self._model, self._data = drawn.server, drawn.model, MjData(drawn.model)
+    def __init__(self, canvas: OverlayCanvas, name: str, colour: tuple[int, int, int]) -> None:
+        self._server, self._model, self._data = canvas.server, canvas.model, MjData(canvas.model)
         self._name, self._colour = name, colour
         self._handles: dict[int, Any] = {}
         self._seen: set[int] = set()
@@ -84,17 +84,17 @@ class Copies:
 class Posture(Overlay):
     """Shows the moving parts at their commanded positions, relative to the body's current position."""
 
-    def __init__(self, drawn: Drawn) -> None:
-        self._copies = Copies(drawn, "/overlays/posture", COLOUR)
+    def __init__(self, canvas: OverlayCanvas) -> None:
+        self._copies = Copies(canvas, "/overlays/posture", COLOUR)
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
         """Returns the commanded joint positions [rad] or [m], with their index in `qpos`, of each body."""
         return {name: _targets(body) for name, body in observed.simulation.world.bodies.items()}
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+    def draw(self, data: MjData, by_body: dict[str, Any] | None) -> None:
         """Draws the parts that differ from the current posture."""
-        self._copies.draw(data, [target for body in (drawn or {}).values() for target in body])
+        self._copies.draw(data, [target for body in (by_body or {}).values() for target in body])
         self.switch()
 
     def switch(self) -> None:

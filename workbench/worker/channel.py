@@ -27,18 +27,18 @@ from workbench.worker.messages import (
     LONGEST,
     LONGEST_ANSWER,
     TO_WORKER,
-    At,
-    Do,
-    Draw,
+    AskPosition,
+    CommandMessage,
     Facts,
     Leave,
     Message,
-    News,
+    NewEvents,
     Notice,
+    Position,
     Reply,
+    SetOverlays,
     Start,
     State,
-    Where,
     framed,
     shortened,
 )
@@ -67,7 +67,7 @@ class Channel:
         self._wire = wire
         self._arrived = arrived
         self._end = end
-        self.inbox: queue.SimpleQueue[Do | Draw | Leave] = queue.SimpleQueue()
+        self.inbox: queue.SimpleQueue[CommandMessage | SetOverlays | Leave] = queue.SimpleQueue()
         self._messages: deque[Message] = deque()
         self._events = EventLog()
         """The events that wait; if there are too many, the oldest are left out, which the numbers show."""
@@ -88,7 +88,7 @@ class Channel:
 
     # -- receiving
 
-    def receive(self, timeout: float | None = None) -> Do | Draw | Leave | None:
+    def receive(self, timeout: float | None = None) -> CommandMessage | SetOverlays | Leave | None:
         """Returns the next command; None if none arrives within the timeout [s]. Without a timeout, it waits."""
         if self.left:
             _end_copy()
@@ -102,7 +102,7 @@ class Channel:
         assert isinstance(message, Start)
         return message
 
-    def _next(self) -> Start | Do | Draw | Leave | Where | None:
+    def _next(self) -> Start | CommandMessage | SetOverlays | Leave | AskPosition | None:
         head = self._exactly(LENGTH)
         data = None if head is None else self._exactly(int.from_bytes(head, "big"))
         return None if data is None else TO_WORKER.decode(data)
@@ -126,23 +126,25 @@ class Channel:
             if message is None:
                 self._end(0)  # the server is gone
                 return
-            if isinstance(message, Where):
+            if isinstance(message, AskPosition):
                 if self.busy is not None:
                     self.busy()
                 self.post(self._where())
-            elif isinstance(message, (Do, Draw, Leave)):
+            elif isinstance(message, (CommandMessage, SetOverlays, Leave)):
                 self.inbox.put(message)
                 if self._arrived is not None:
                     self._arrived()
 
-    def _where(self) -> At:
+    def _where(self) -> Position:
         """Returns the position of the main thread in the modeller's own files."""
         frame: FrameType | None = sys._current_frames().get(self._main or 0)  # pyright: ignore[reportPrivateUsage] # Python documents it
         lines: list[traceback.FrameSummary] = [] if frame is None else list(traceback.extract_stack(frame))
         folder = self.start.folder + os.sep
         own = [line for line in lines if line.filename == self.start.path or line.filename.startswith(folder)]
         return (
-            At(file=shortened(own[-1].filename), line=own[-1].lineno, function=shortened(own[-1].name)) if own else At(file=None, line=None)
+            Position(file=shortened(own[-1].filename), line=own[-1].lineno, function=shortened(own[-1].name))
+            if own
+            else Position(file=None, line=None)
         )
 
     def _check_wire(self) -> None:
@@ -160,7 +162,7 @@ class Channel:
         with self._something:
             if isinstance(message, Notice) and len(self._messages) >= MAX_MESSAGES and message.level != "error":
                 return
-            if isinstance(message, (Reply, At, Facts)) and self._state is not None:
+            if isinstance(message, (Reply, Position, Facts)) and self._state is not None:
                 self._flush_events()
                 self._messages.append(self._state)
                 self._state = None
@@ -216,7 +218,7 @@ class Channel:
         """Puts waiting events among the messages."""
         while self._events:
             first, some = self._events.since(self._events.first)
-            self._messages.append(News(first=first, events=some))
+            self._messages.append(NewEvents(first=first, events=some))
             self._events.drop(first + len(some))
 
     def _write(self) -> None:

@@ -24,7 +24,7 @@ from workbench.loader import listing_of
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import notice_of
 from workbench.worker.memory import watch_memory
-from workbench.worker.messages import MAX_PRINTED, Over, Reply, notice
+from workbench.worker.messages import MAX_PRINTED, Reply, WorkerEnded, notice
 from workbench.worker.orphans import adopt
 from workbench.worker.run_controller import RunController
 
@@ -58,7 +58,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
             _leave_copy(error)
         channel.post(notice_of(error))
     errors.finish()
-    channel.post(Over())
+    channel.post(WorkerEnded())
     channel.flush()
     with suppress(OSError):
         wire.shutdown(socket.SHUT_WR)

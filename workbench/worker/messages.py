@@ -72,7 +72,7 @@ class Start(Message, frozen=True, kw_only=True):
     """Identifies the model's text; see `ModelFile.version`."""
 
 
-class Do(Message, frozen=True, kw_only=True):
+class CommandMessage(Message, frozen=True, kw_only=True):
     """A command or question from a page."""
 
     id: int
@@ -84,13 +84,13 @@ class Leave(Message, frozen=True, kw_only=True):
     """Asks the worker to end normally."""
 
 
-class Draw(Message, frozen=True, kw_only=True):
+class SetOverlays(Message, frozen=True, kw_only=True):
     """Sets the kinds of overlays whose data each state contains from now on; see `workbench.overlays`."""
 
     kinds: tuple[str, ...]
 
 
-class Where(Message, frozen=True, kw_only=True):
+class AskPosition(Message, frozen=True, kw_only=True):
     """Asks which line of the model the worker is at."""
 
 
@@ -108,7 +108,7 @@ class Facts(Message, frozen=True, kw_only=True):
     """JSON: the values of parameters by name."""
     world: bytes
     """JSON: bodies, apertures and objects; null without a world."""
-    openings: bytes = b"[]"
+    initial_widths: bytes = b"[]"
     """JSON: the widths of apertures at the start of the simulations of the run [m], each as [number, widths by name]. The number is that
     of the simulation among all runs of a program; simulations that begin with the widths of the one before are left out."""
     changes: bytes = b"[]"
@@ -147,11 +147,11 @@ class State(Message, frozen=True, kw_only=True):
     """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
     parameters: bytes = b"{}"
     """JSON: the values of parameters that users have changed during the run, up to this moment, by name."""
-    drawn: dict[str, Any] = {}
-    """The data of overlays by kind, as requested by a `Draw`."""
+    overlay_data: dict[str, Any] = {}
+    """The data of overlays by kind, as requested by a `SetOverlays`."""
 
 
-class News(Message, frozen=True, kw_only=True):
+class NewEvents(Message, frozen=True, kw_only=True):
     """New events, in order."""
 
     first: int
@@ -160,7 +160,7 @@ class News(Message, frozen=True, kw_only=True):
     """JSON of each event: time [us], source, kind, data."""
 
 
-class Cut(Message, frozen=True, kw_only=True):
+class EventsRemoved(Message, frozen=True, kw_only=True):
     """The run continues differently: the events from a number on no longer exist."""
 
     events: int
@@ -224,7 +224,7 @@ def notice(
 
 
 class Reply(Message, frozen=True, kw_only=True):
-    """The reply to a `Do`."""
+    """The reply to a `CommandMessage`."""
 
     id: int
     result: bytes = b"null"
@@ -236,7 +236,7 @@ class Reply(Message, frozen=True, kw_only=True):
     """The line of a text that was the reason to refuse a question about it."""
 
 
-class At(Message, frozen=True, kw_only=True):
+class Position(Message, frozen=True, kw_only=True):
     """The position of the worker: the innermost line of the modeller's code."""
 
     file: str | None
@@ -244,12 +244,12 @@ class At(Message, frozen=True, kw_only=True):
     function: str = ""
 
 
-class Over(Message, frozen=True, kw_only=True):
+class WorkerEnded(Message, frozen=True, kw_only=True):
     """The worker ends normally."""
 
 
-ToWorker = Start | Do | Draw | Leave | Where
-FromWorker = Facts | State | News | Cut | Branched | Unrecorded | Loaded | Share | Notice | Reply | At | Over
+ToWorker = Start | CommandMessage | SetOverlays | Leave | AskPosition
+FromWorker = Facts | State | NewEvents | EventsRemoved | Branched | Unrecorded | Loaded | Share | Notice | Reply | Position | WorkerEnded
 
 _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)

@@ -46,7 +46,7 @@ from workbench.worker.messages import ENDED, Facts
 from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.simulation_display import SimulationDisplay
-from workbench.worker.state_history import MAX_SIMULATIONS, Past
+from workbench.worker.state_history import MAX_SIMULATIONS, StateHistory
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""
@@ -179,7 +179,7 @@ class ProgramRun(ControlledRun):
         self._simulations: dict[int, tuple[SimulationDisplay, int]] = {}
         """Those nearest to the present by number, and when each began [us]. They are kept when the program is run again: the stored past of
         a simulation is passed on to the one that begins in its place."""
-        self._openings: dict[int, dict[str, float]] = {}
+        self._initial_widths: dict[int, dict[str, float]] = {}
         """The widths of apertures at the start of each simulation [m], by its number among all runs; kept likewise."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
         """The numbers of the latest runs, these, and their models."""
@@ -191,7 +191,7 @@ class ProgramRun(ControlledRun):
         """The compiled scene, the world, and the widths at the start of simulations that the server knows."""
         self._scene_of: SimulationDisplay | None = None
         """The simulation that was shown last."""
-        self._ahead: dict[int, Past] = {}
+        self._ahead: dict[int, StateHistory] = {}
         """The recorded states of simulations that have not begun yet in this repetition of a recording, by their number among all runs."""
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
@@ -238,11 +238,11 @@ class ProgramRun(ControlledRun):
         """Shows the whole timeline of a recorded run that is run again."""
         recorded = self._controller.channel.start.recorded
         if recorded is not None:
-            ahead: dict[int, Past] = {}
+            ahead: dict[int, StateHistory] = {}
 
             def keep(state: RecordedState) -> None:
                 if state.run in ahead or len(ahead) < MAX_SIMULATIONS:
-                    ahead.setdefault(state.run, Past()).add_recorded(state)
+                    ahead.setdefault(state.run, StateHistory()).add_recorded(state)
 
             known_run = KnownRun(Path(recorded), keep)
             self._ahead = ahead
@@ -273,7 +273,7 @@ class ProgramRun(ControlledRun):
     def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
-        self._scene = mj_model, world, openings = self._scene_now()
+        self._scene = mj_model, world, initial_widths = self._scene_now()
         period = seconds(self.period)
         changes = change_menu(agents_only=self._shown is None)
         facts = Facts(
@@ -282,7 +282,7 @@ class ProgramRun(ControlledRun):
             period=period,
             parameters=parameters,
             world=world,
-            openings=openings,
+            initial_widths=initial_widths,
             changes=changes,
             mj_model=mj_model,
         )
@@ -291,8 +291,8 @@ class ProgramRun(ControlledRun):
     def _scene_now(self) -> tuple[bytes | None, bytes, bytes]:
         if self._shown is None:
             return None, b"null", b"[]"
-        openings = [next(same) for _, same in groupby(sorted(self._openings.items()), key=itemgetter(1))]
-        return self._shown.mj_model, to_json(self._shown.world(self._listing.parameters)).encode(), to_json(openings).encode()
+        initial_widths = [next(same) for _, same in groupby(sorted(self._initial_widths.items()), key=itemgetter(1))]
+        return self._shown.mj_model, to_json(self._shown.world(self._listing.parameters)).encode(), to_json(initial_widths).encode()
 
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
@@ -561,7 +561,7 @@ class ProgramRun(ControlledRun):
             self._shown = shown = SimulationDisplay(simulation, None if earlier is None else earlier[0].kept)
             self._take_ahead(shown)
             self._simulations[self._begun] = shown, self._clock
-            self._openings[simulation.event_log.number or 1] = shown.openings
+            self._initial_widths[simulation.event_log.number or 1] = shown.initial_widths
             if len(self._simulations) > MAX_SIMULATIONS:
                 del self._simulations[max(self._simulations, key=lambda number: abs(number - self._begun))]
 

@@ -24,7 +24,19 @@ from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun, LossError
 from workbench.worker.error_report import describe_error, notice_of
 from workbench.worker.known_run import KnownRun, difference_notice
-from workbench.worker.messages import ENDED, Branched, Cut, Do, Draw, Leave, Reply, State, Status, Unrecorded, shortened
+from workbench.worker.messages import (
+    ENDED,
+    Branched,
+    CommandMessage,
+    EventsRemoved,
+    Leave,
+    Reply,
+    SetOverlays,
+    State,
+    Status,
+    Unrecorded,
+    shortened,
+)
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
@@ -77,11 +89,11 @@ class RunController:
         self._interrupted = False
         """Whether the run has something to do although it is paused."""
         self._shown = 0.0
-        self._later: deque[Do] = deque()
+        self._later: deque[CommandMessage] = deque()
         """Commands that have arrived while the run is on its way to another time, and wait until it is there."""
         self._unanswered: list[int] = []
         """The commands with which the run has begun its way to another time: the next state answers them."""
-        self._drawn: tuple[str, ...] = ()
+        self._overlays: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
     def set_run(self, run: ControlledRun) -> None:
@@ -146,7 +158,7 @@ class RunController:
             if self.status == "running" and not self._interrupted:
                 return
 
-    def _receive(self, timeout: float | None) -> Do | Draw | Leave | None:
+    def _receive(self, timeout: float | None) -> CommandMessage | SetOverlays | Leave | None:
         """Returns the next command; None if none arrives within the timeout [s]. Without a timeout, it waits."""
         return self._later.popleft() if self._later else self.channel.receive(timeout)
 
@@ -168,7 +180,7 @@ class RunController:
         self._seen = len(self.run.trace)  # stop conditions are for what happens after it
         self.show()
         while self.status == "running" and (message := self.channel.receive(0)) is not None:
-            if isinstance(message, Do) and not (leave and pickle.loads(message.command).leaves_way):
+            if isinstance(message, CommandMessage) and not (leave and pickle.loads(message.command).leaves_way):
                 self._later.append(message)
             else:
                 self._hear(message)
@@ -242,7 +254,7 @@ class RunController:
     def _cut(self, events: int) -> None:
         """Removes what was known of the events from a number on."""
         self.run.cut_events(events)
-        self.channel.cut(Cut(events=events), events)
+        self.channel.cut(EventsRemoved(events=events), events)
 
     def leave_recording(self, at: float, until: float) -> None:
         """Makes the run, which has repeated a recording, a branch of it: what follows is kept in the run's own recording.
@@ -270,12 +282,12 @@ class RunController:
 
     # -- commands from users
 
-    def _hear(self, message: Do | Draw | Leave) -> None:
+    def _hear(self, message: CommandMessage | SetOverlays | Leave) -> None:
         if isinstance(message, Leave):
             self.leaving = True
             raise Leaving
-        if isinstance(message, Draw):
-            self._drawn = message.kinds
+        if isinstance(message, SetOverlays):
+            self._overlays = message.kinds
             self.show()
             return
         try:
@@ -383,7 +395,7 @@ class RunController:
             parameters=bounded_json(run.changed_parameters()),
             result=bounded_json(run.result() if self.status == "ended" else None),
             physics=physics,
-            drawn=run.drawn(self._drawn) if self._drawn else {},
+            overlay_data=run.overlay_data(self._overlays) if self._overlays else {},
         )
         with self._sending:
             self._send(state, trace)

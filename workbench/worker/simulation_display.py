@@ -21,7 +21,7 @@ from actr3d.world.compiled import from_bytes, to_bytes
 from workbench.curves import CurveReader, stretch, thinned
 from workbench.geom_colours import colour_of_object, dress
 from workbench.overlays import OVERLAYS, Observed
-from workbench.worker.state_history import Kept
+from workbench.worker.state_history import SimulationHistory
 from workbench.worker.stop_conditions import Touches
 
 WIDEST = 300
@@ -36,11 +36,11 @@ class SimulationDisplay:
         kept: The past and future that are known from an earlier pass through it.
     """
 
-    def __init__(self, simulation: Simulation, kept: Kept | None = None) -> None:
+    def __init__(self, simulation: Simulation, kept: SimulationHistory | None = None) -> None:
         self.simulation = simulation
         self.period = microseconds(simulation.period)
         """Length of a tick [us]."""
-        self.kept = kept or Kept(self.period)
+        self.kept = kept or SimulationHistory(self.period)
         self.kept.keep(0, simulation.world, {})
         simulation.event_log.keep_states(self.kept)
         self.mj_model = to_bytes(simulation.world.mj_model)
@@ -59,20 +59,20 @@ class SimulationDisplay:
             "empty": self.simulation.world.mj_model.ngeom == 0,
             "agents": self.simulation.embodied,
             "objects": self.simulation.world.objects.names,
-            "widths": widths(self.surroundings["apertures"], parameters),
+            "widths": width_limits(self.surroundings["apertures"], parameters),
         }
 
     @property
-    def openings(self) -> dict[str, float]:
+    def initial_widths(self) -> dict[str, float]:
         """The widths of apertures at the start [m]."""
         return {part.name: part.width for part in self.simulation.world.scene.parts if isinstance(part, Aperture)}
 
     def scene(self) -> tuple[bytes, dict[str, float]]:
         """Returns the state of the physics, and the widths of apertures [m]."""
         world = self.simulation.world
-        return world.state_bytes(), {name: world.aperture_width(name) for name in self.openings}
+        return world.state_bytes(), {name: world.aperture_width(name) for name in self.initial_widths}
 
-    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+    def overlay_data(self, kinds: tuple[str, ...]) -> dict[str, Any]:
         """Returns the current data of overlays by kind; empty if it cannot be computed, for example after the physics has diverged."""
         with self.simulation.only_looking(), suppress(Actr3dError):
             return {kind: OVERLAYS[kind].data(self._observed) for kind in kinds}
@@ -128,7 +128,7 @@ class SimulationDisplay:
         return own or next((sense.parameters for sense in body.senses if isinstance(sense, EyeSense)), CameraParameters())
 
 
-def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:
+def width_limits(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:
     """Returns the minimum and maximum width of each doorway [cm], from the bounds of the parameter that sets doorways."""
     setting = [one for one in parameters if one.live is not None and one.live.word == "aperture"]
     least = [math.ceil(100 * one.least) for one in setting if one.least is not None]

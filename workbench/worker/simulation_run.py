@@ -126,7 +126,7 @@ class SimulationRun(ControlledRun):
             period=self._simulation.period,
             parameters=to_json(parameters).encode(),
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
-            openings=to_json([(1, self._shown.openings)]).encode(),
+            initial_widths=to_json([(1, self._shown.initial_widths)]).encode(),
             mj_model=self._shown.mj_model,
             changes=change_menu(agents_only=False),
             live=to_json(

@@ -34,7 +34,7 @@ MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
 
-class Kept:
+class SimulationHistory:
     """Stores the past of a simulation. It can also serve the same simulation when it is run again.
 
     Args:
@@ -42,8 +42,8 @@ class Kept:
     """
 
     def __init__(self, period: int) -> None:
-        self.states = Past()
-        self.walked = Walked(period)
+        self.states = StateHistory()
+        self.walked = PathHistory(period)
 
     @property
     def furthest(self) -> int:
@@ -62,7 +62,7 @@ class Kept:
         self.walked.cut(tick)
 
 
-class Past:
+class StateHistory:
     """Stores the states of a run, and the contacts of bodies between them, whether or not anyone watches, including those ahead of the
     present after it has gone back."""
 
@@ -134,7 +134,7 @@ class Past:
         return number * self.every, self._states[number], self._contacts.get(number, {})
 
 
-class Walked:
+class PathHistory:
     """Stores the positions of bodies on the floor, including those ahead of the present after the run has gone back.
 
     Where a body was put somewhere else at once, its path has a gap: it moved farther than its speed allows.

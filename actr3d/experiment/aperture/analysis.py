@@ -480,7 +480,7 @@ def _critical_ratios(findings: Findings) -> Parts:
     rows: list[dict[str, Any]] = []
     for group in findings.groups:
         for condition in findings.conditions:
-            for one in findings.people(group):
+            for one in findings.participants(group):
                 fits = _fits(findings.trials(group, condition, one), findings.curve(group, condition, one))
                 rows.append({"group": group, "condition": condition, "participant": one, **fits})
     frame = pandas().DataFrame(rows)
@@ -555,7 +555,7 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
 
 def _places(findings: Findings) -> dict[str, int]:
     """Returns the place of each participant on the axis, also of those without a critical ratio."""
-    return {one: n for n, one in enumerate(one for group in findings.groups for one in findings.people(group))}
+    return {one: n for n, one in enumerate(one for group in findings.groups for one in findings.participants(group))}
 
 
 def _ratios_pane(rows: Any, condition: str, findings: Findings) -> Pane:

@@ -22,7 +22,7 @@ from actr3d.experiment.aperture.critical_ratio import CriticalRatio, Trials, cri
 from actr3d.experiment.aperture.passing import DEPTH, TURNED, Passing
 from actr3d.experiment.report.libraries import noting_warnings, pingouin
 from actr3d.experiment.report.page import number
-from actr3d.experiment.report.statistics import FEWEST
+from actr3d.experiment.report.statistics import MIN_FOR_TESTS
 
 CRITICAL = (1.25, 1.35)
 """The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; the wider bounds
@@ -128,7 +128,7 @@ class Findings:
 
     def has(self, group: str, condition: str, level: float) -> bool:
         """Returns whether a cell has an angle."""
-        return any(level in self._angles(group, condition, one) for one in self.people(group))
+        return any(level in self._angles(group, condition, one) for one in self.participants(group))
 
     def mean(self, group: str, condition: str, level: float) -> float:
         """Returns the mean angle of a cell, of the participants' means [degrees]."""
@@ -136,10 +136,10 @@ class Findings:
 
     def _means(self, group: str, condition: str, level: float) -> dict[str, float]:
         """Returns the mean angle of each participant of a cell that has one [degrees]."""
-        found = {one: self._angles(group, condition, one).get(level) for one in self.people(group)}
+        found = {one: self._angles(group, condition, one).get(level) for one in self.participants(group)}
         return {one: mean(angles) for one, angles in found.items() if angles}
 
-    def people(self, group: str) -> list[str]:
+    def participants(self, group: str) -> list[str]:
         """Returns the participants of a group."""
         return [one for of, one in self._shoulders if of == group]
 
@@ -162,7 +162,7 @@ class Findings:
         """The groups with the narrowest and the widest shoulders; None if there is one group."""
         if len(self.groups) < 2:
             return None
-        widths = {group: mean(self._shoulders[group, one] for one in self.people(group)) for group in self.groups}
+        widths = {group: mean(self._shoulders[group, one] for one in self.participants(group)) for group in self.groups}
         return min(widths, key=widths.__getitem__), max(widths, key=widths.__getitem__)
 
     # -- the constraints
@@ -191,7 +191,7 @@ class Findings:
                 for before, level in pairwise(there):
                     narrow, wide = self._means(group, condition, before), self._means(group, condition, level)
                     changes = [wide[one] - narrow[one] for one in narrow if one in wide]
-                    if len(changes) < FEWEST:
+                    if len(changes) < MIN_FOR_TESTS:
                         return _untested(1, says, "it needs three or more participants in each group")
                     rises[group, condition, level] = change(changes)
                 if len(there) > 1:
@@ -227,7 +227,7 @@ class Findings:
         }
         if not cells:
             return _untested(2, says, "it needs apertures below 63 cm")
-        if any(len(angles) < FEWEST for pair in cells.values() for angles in pair):
+        if any(len(angles) < MIN_FOR_TESTS for pair in cells.values() for angles in pair):
             return _untested(2, says, "it needs three or more participants in each group")
         differences = {cell: difference(wider, narrower) for cell, (narrower, wider) in cells.items()}
         lowest = min(differences, key=lambda cell: differences[cell].low)
@@ -250,10 +250,10 @@ class Findings:
             return None
         curves = {key: self.curve(*key) for key in sorted(self._people) if key[0] in self.pair}
         there = [
-            [(group, one) for one in self.people(group) if any((group, condition, one) in curves for condition in self.conditions)]
+            [(group, one) for one in self.participants(group) if any((group, condition, one) in curves for condition in self.conditions)]
             for group in self.pair
         ]
-        if min(map(len, there)) < FEWEST:
+        if min(map(len, there)) < MIN_FOR_TESTS:
             return None
         low = max((min(ratios) for ratios, _ in curves.values()), default=math.inf)
         high = min((max(ratios) for ratios, _ in curves.values()), default=-math.inf)
@@ -291,13 +291,13 @@ class Findings:
         """4: the critical ratio of each cell: its whole interval is inside the bounds, outside, or neither."""
         says = f"critical ratio {CRITICAL[0]} to {CRITICAL[1]} in each cell"
         cells = {
-            (group, condition): [of for who in self.people(group) if (of := self.trials(group, condition, who))]
+            (group, condition): [of for who in self.participants(group) if (of := self.trials(group, condition, who))]
             for group in self.groups
             for condition in self.conditions
         }
         if not cells or any(not of or not _spans([one.ratio for who in of for one in who], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
-        if any(len(of) < FEWEST for of in cells.values()):
+        if any(len(of) < MIN_FOR_TESTS for of in cells.values()):
             return _untested(4, says, "it needs three or more participants in each group")
         found = {key: critical_ratio_of_group([[(one.ratio, one.turned) for one in who] for who in of]) for key, of in cells.items()}
         met = {_within(ratio, CRITICAL) for ratio in found.values()}
@@ -315,12 +315,12 @@ class Findings:
         met = True
         for group in self.groups:
             differences: list[float] = []
-            for one in self.people(group):
+            for one in self.participants(group):
                 normal, fast = (dict(zip(*self.curve(group, condition, one), strict=True)) for condition in ("normal", "fast"))
                 below = [fast[ratio] - normal[ratio] for ratio in normal if ratio < CRITICAL[0] and ratio in fast]
                 if below:
                     differences.append(mean(below))
-            if len(differences) < FEWEST:
+            if len(differences) < MIN_FOR_TESTS:
                 return _untested(5, says, "it needs three or more participants in each group, with apertures below the critical ratio")
             p = above_zero(mean(differences), stdev(differences) / math.sqrt(len(differences)), len(differences) - 1)
             met &= p < 0.05
@@ -397,14 +397,14 @@ class Findings:
             text += "; none: no walker set out, although people pass"
         return Constraint(number=BARS, says=says, met=met, found=text)
 
-    def judged(self, people: Sequence[Trials] | None) -> Constraint:
+    def judged(self, participants: Sequence[Trials] | None) -> Constraint:
         """9: the boundary of what is judged to be passable: its whole interval is inside the bounds, outside, or neither."""
         says = "«can pass» from about 1.16, below 1.30"
-        if people is None:
+        if participants is None:
             return _untested(9, says, "it needs judgements, as in the design passability_judgement")
-        if len(people) < FEWEST:
+        if len(participants) < MIN_FOR_TESTS:
             return _untested(9, says, "it needs three or more participants")
-        boundary = critical_ratio_of_group(people)
+        boundary = critical_ratio_of_group(participants)
         if boundary is None:
             return _untested(9, says, "it needs judgements of both kinds: all were the same")
         met, text = _within(boundary, PASSABLE), f"from {_ratio_text(boundary)}"

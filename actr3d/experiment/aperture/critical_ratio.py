@@ -78,7 +78,7 @@ def critical_ratio(trials: Trials) -> CriticalRatio | None:
     return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high, beyond=bool(likely[0] or likely[-1]))
 
 
-def critical_ratio_of_group(people: Sequence[Trials]) -> CriticalRatio | None:
+def critical_ratio_of_group(participants: Sequence[Trials]) -> CriticalRatio | None:
     """Returns the ratio at which half of all trials of some participants are turned, with an interval for other such people.
 
     Trials of one person are more alike than those of several. So the interval is that of all trials or, where this is wider, that of the
@@ -87,12 +87,14 @@ def critical_ratio_of_group(people: Sequence[Trials]) -> CriticalRatio | None:
     Args:
         people: The trials of each participant, as for `critical_ratio`.
     """
-    found = critical_ratio(trial for one in people for trial in one)
-    if found is None or found.beyond or len(people) < 2:
+    found = critical_ratio(trial for one in participants for trial in one)
+    if found is None or found.beyond or len(participants) < 2:
         return found  # an interval without an end on one side
-    without = [critical_ratio(trial for one in (*people[:n], *people[n + 1 :]) for trial in one) for n in range(len(people))]
+    without = [
+        critical_ratio(trial for one in (*participants[:n], *participants[n + 1 :]) for trial in one) for n in range(len(participants))
+    ]
     values = [one.value for one in without if one is not None and not one.beyond]
-    if len(values) < len(people):
+    if len(values) < len(participants):
         return replace(found, low=-math.inf, high=math.inf)
     error = math.sqrt((len(values) - 1) * pvariance(values))
     low, high = t_interval(found.value, error, len(values) - 1)

@@ -18,7 +18,17 @@ from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.reference_means import ReferenceMeans, factors_of, fit_to, matched, missing, ran_at, same_unit, varied_once
 from actr3d.experiment.report.results import Results
-from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, in_order, participant_means, run_tests
+from actr3d.experiment.report.statistics import (
+    MIN_FOR_BOOTSTRAP,
+    MIN_FOR_TESTS,
+    RESAMPLES,
+    SEED,
+    Tests,
+    cell_means,
+    in_order,
+    participant_means,
+    run_tests,
+)
 from actr3d.experiment.trial_measures import NOTHING_LEFT, ended_early
 from actr3d.runner.traceback_report import PYTHON, failure
 from actr3d.warnings import is_library
@@ -79,13 +89,13 @@ def cautions(results: Results) -> list[Caution]:
     least, planned = min(people.values())
     many = {0: "no participants", 1: "one participant"}.get(least, f"{least} participants")
     many += f" with results, of {planned} in the design" if least < planned else ""
-    if least < FEWEST:
+    if least < MIN_FOR_TESTS:
         narrow = ", and intervals over two participants are no more than their range" if least == 2 else ""
         found.append(
-            f"A group has {many}. With fewer than {FEWEST} nothing can be said about other participants: nothing is tested{narrow}."
+            f"A group has {many}. With fewer than {MIN_FOR_TESTS} nothing can be said about other participants: nothing is tested{narrow}."
         )
-    elif least < FEW:
-        found.append(f"A group has {many}. With fewer than {FEW}, bootstrap intervals are too narrow.")
+    elif least < MIN_FOR_BOOTSTRAP:
+        found.append(f"A group has {many}. With fewer than {MIN_FOR_BOOTSTRAP}, bootstrap intervals are too narrow.")
     if len(results.versions) > 1:
         found.append(f"The trials were run with {len(results.versions)} different sets of versions.")
     return [Caution(text) for text in found]

@@ -19,15 +19,15 @@ AT_ONCE = 1_000_000
 """The number of values of bootstrap samples that are drawn at a time: memory does not grow with the number of participants."""
 SEED = 1987
 """The seed of the bootstrap; the same for every report."""
-FEWEST = 3
+MIN_FOR_TESTS = 3
 """With fewer participants in a group, nothing is tested."""
-FEW = 10
+MIN_FOR_BOOTSTRAP = 10
 """With fewer participants, bootstrap intervals are known to be too narrow."""
 LEVEL = 0.05
 """The level of significance of the checks of assumptions."""
-MOST = 5_000
+MAX_SHAPIRO = 5_000
 """The maximum number of participants that the test of Shapiro and Wilk takes; of more, some from all groups are taken."""
-NOTHING = 1e-12
+ROUNDING_ERROR = 1e-12
 """A standard deviation below this, relative to the values, is rounding."""
 NO_SPREAD = 1e-6
 """Participants differ in an effect if the standard deviation of their differences is above this, relative to that of all means.
@@ -105,7 +105,7 @@ def rmse_and_r(found: Sequence[float], target: Sequence[float]) -> tuple[float, 
     """
     one, other = np.asarray(found, dtype=float), np.asarray(target, dtype=float)
     rmse = float(np.sqrt(np.mean((one - other) ** 2)))
-    if len(one) < 3 or any(np.ptp(means) <= NOTHING * np.abs(means).max() for means in (one, other)):
+    if len(one) < 3 or any(np.ptp(means) <= ROUNDING_ERROR * np.abs(means).max() for means in (one, other)):
         return rmse, float("nan")
     return rmse, float(np.corrcoef(one, other)[0, 1])
 
@@ -136,8 +136,8 @@ def run_tests(results: Results, measure: str) -> Tests:
         reason = "the design has one group and no factor"
     elif len(means) < 2 or np.std(means["value"]) <= _rounding(means):
         reason = "all means are the same"
-    elif len(sizes) < len(results.groups) or sizes.min() < FEWEST:
-        reason = f"a group has fewer than {FEWEST} participants with a value in every cell"
+    elif len(sizes) < len(results.groups) or sizes.min() < MIN_FOR_TESTS:
+        reason = f"a group has fewer than {MIN_FOR_TESTS} participants with a value in every cell"
     if reason:
         return Tests(anova=None, mixed_model=None, assumptions=None, notes=[f"Not tested: {reason}."])
     if lost:
@@ -161,9 +161,9 @@ def run_tests(results: Results, measure: str) -> Tests:
                 mixed = _mixed_model(means, factors, grouped, notes)
             else:
                 notes.append("Not tested: the mixed model, because it leaves no residual beyond rounding.")
-    if mixed is not None and sizes.min() < FEW:
+    if mixed is not None and sizes.min() < MIN_FOR_BOOTSTRAP:
         notes.append(
-            f"With fewer than {FEW} participants in a group, the p values of the mixed model's Wald tests are too small, above all for the "
+            f"With fewer than {MIN_FOR_BOOTSTRAP} participants in a group, the p values of the mixed model's Wald tests are too small, above all for the "
             "effect of group. Where the analysis of variance tests the same effect, prefer it."
         )
     # Of its attempts to fit, only the end matters: `_mixed_model` says if it is not known.
@@ -234,7 +234,7 @@ def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]],
 
 def _rounding(means: Any) -> float:
     """Returns the standard deviation that is rounding of values."""
-    return NOTHING * max(1.0, float(np.abs(means["value"]).max()))
+    return ROUNDING_ERROR * max(1.0, float(np.abs(means["value"]).max()))
 
 
 def _least_spread(whole: Any) -> float:
@@ -319,8 +319,8 @@ def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks
         scores[f"participants' trends over {factor}"] = _over(effects, [])
     for name, of in scores.items():
         residuals = (of["value"] - of.groupby("group", observed=True)["value"].transform("mean")).to_numpy()
-        sample = residuals[:: -(-len(residuals) // MOST)]
-        if len(sample) <= FEWEST or np.std(sample) <= least:  # the test needs four
+        sample = residuals[:: -(-len(residuals) // MAX_SHAPIRO)]
+        if len(sample) <= MIN_FOR_TESTS or np.std(sample) <= least:  # the test needs four
             continue
         found = pg.normality(sample).iloc[0]
         says = "yes" if found["pval"] >= LEVEL else "no: prefer the bootstrap intervals"

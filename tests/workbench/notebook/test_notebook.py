@@ -36,7 +36,19 @@ from workbench.notebook.live_run import LiveRun
 from workbench.notebook.server import NotebookWorker
 from workbench.page_commands.changes import SimulationCommand, Undo
 from workbench.page_commands.running import Pause, Run, Seek, Speed, Step
-from workbench.worker.messages import FROM_WORKER, LENGTH, Cut, Do, Facts, FromWorker, News, Over, Start, State, framed
+from workbench.worker.messages import (
+    FROM_WORKER,
+    LENGTH,
+    CommandMessage,
+    EventsRemoved,
+    Facts,
+    FromWorker,
+    NewEvents,
+    Start,
+    State,
+    WorkerEnded,
+    framed,
+)
 
 
 class Counting(Model):
@@ -92,15 +104,15 @@ class Server:
                 return message
 
     def say(self, command: Any) -> None:
-        self._wire.sendall(framed(Do(id=1, command=pickle.dumps(command))))
+        self._wire.sendall(framed(CommandMessage(id=1, command=pickle.dumps(command))))
 
     def events(self) -> list[int]:
         """Returns the number of each event that the server holds now."""
         held: list[int] = []
         for message in self.messages:
-            if isinstance(message, News):
+            if isinstance(message, NewEvents):
                 held += range(message.first, message.first + len(message.events))
-            elif isinstance(message, Cut):
+            elif isinstance(message, EventsRemoved):
                 held = [number for number in held if number < message.events]
         return held
 
@@ -250,7 +262,7 @@ def test_a_simulation_without_references_ends_its_run() -> None:
         del simulation
         gc.collect()
         assert server.run() is None
-        while not isinstance(server.hear(), Over):
+        while not isinstance(server.hear(), WorkerEnded):
             pass
 
     in_notebook(cells)
@@ -263,7 +275,7 @@ def test_a_kernel_that_is_restarted_ends_its_runs_as_one_that_says_so() -> None:
         wire.close()
         return [await worker.receive(), await worker.receive()]
 
-    assert asyncio.run(restart()) == [Over(), None]
+    assert asyncio.run(restart()) == [WorkerEnded(), None]
 
 
 def test_the_widget_needs_its_package_and_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,13 +19,13 @@ from tests.helpers.sessions import Desk, Talk
 from tests.simulation.test_observers import sensing
 from tests.workbench.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.workbench.test_reopened import reopened
-from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay, ViewSettings
+from workbench.overlays import OVERLAYS, Observed, Overlay, OverlayCanvas, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.page_commands import Question
 from workbench.protocol import COMMAND
 from workbench.worker.simulation_display import SimulationDisplay
-from workbench.worker.state_history import NEAR, Walked
+from workbench.worker.state_history import NEAR, PathHistory
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -62,11 +62,11 @@ def drawn(talk: Talk, tick: int, kinds: tuple[str, ...] = ALL) -> dict[str, Any]
 
     def there() -> bool:
         state = talk.session.state
-        return state is not None and state.tick == tick and set(state.drawn) == set(kinds)
+        return state is not None and state.tick == tick and set(state.overlay_data) == set(kinds)
 
     talk.wait(there)
     assert talk.session.state is not None
-    return talk.session.state.drawn
+    return talk.session.state.overlay_data
 
 
 async def draw(talk: Talk, kinds: tuple[str, ...]) -> None:
@@ -98,7 +98,7 @@ def test_an_overlay_and_a_question_read_noisy_senses_and_the_agent_senses_the_sa
     for _ in range(200):
         alone.advance(1)
         shown.simulation.advance(1)
-        assert isinstance(shown.drawn(("near",))["near"]["walker"], float)
+        assert isinstance(shown.overlay_data(("near",))["near"]["walker"], float)
         assert isinstance(HowFar().carry_out(controller), float)
     once, again = ([event.to_json() for event in run.trace or ()] for run in (alone, shown.simulation))
     assert again == once
@@ -107,7 +107,7 @@ def test_an_overlay_and_a_question_read_noisy_senses_and_the_agent_senses_the_sa
 def test_only_requested_overlays_are_sent(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 5)
     assert talk.session.state is not None
-    assert talk.session.state.drawn == {}
+    assert talk.session.state.overlay_data == {}
     assert set(drawn(talk, 5, ("path",))) == {"path"}
     assert drawn(talk, 5, ()) == {}
 
@@ -223,7 +223,7 @@ def test_a_path_has_a_gap_where_a_body_was_moved_by_hand(desk: Desk, tmp_path: P
 def test_the_path_of_a_fast_body_has_no_gap_even_where_it_is_stopped() -> None:
     parts = (Floor(), Car(name="car"), Wall(name="wall", start=(40, -5), end=(40, 5)))
     world = World(Scene(parts=parts))
-    car, walked, steps = world.bodies["car"], Walked(10_000), round(0.01 / world.scene.timestep)
+    car, walked, steps = world.bodies["car"], PathHistory(10_000), round(0.01 / world.scene.timestep)
     walked.keep(0, world)
     car.set("throttle", 1.0)
     for tick in range(1, 1001):
@@ -294,7 +294,7 @@ def test_a_new_run_sends_the_overlays_that_are_already_shown(desk: Desk, tmp_pat
     talk = after(desk, tmp_path, 5)
     drawn(talk, 5, ("path",))
     talk.say("restart")
-    talk.wait(lambda: talk.session.run == 2 and talk.session.state is not None and "path" in talk.session.state.drawn)
+    talk.wait(lambda: talk.session.run == 2 and talk.session.state is not None and "path" in talk.session.state.overlay_data)
 
 
 def test_who_looks_switches_for_all_and_takes_no_control(desk: Desk, tmp_path: Path) -> None:
@@ -342,14 +342,14 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
         class _Heights(Overlay):  # pyright: ignore[reportUnusedClass]
             """Shows how high bodies are."""
 
-            def __init__(self, drawn: Drawn) -> None: ...
+            def __init__(self, canvas: OverlayCanvas) -> None: ...
 
             @staticmethod
             def data(observed: Observed) -> dict[str, Any]:
                 """Returns the height of each body [m]."""
                 return {name: body.get("pose").z for name, body in observed.simulation.world.bodies.items()}
 
-            def draw(self, data: Any, drawn: Any) -> None: ...
+            def draw(self, data: Any, by_body: Any) -> None: ...
 
             def switch(self) -> None: ...
 
@@ -361,7 +361,9 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
 
 def test_labels_keep_clear_of_the_head_and_not_only_of_the_eye() -> None:
     world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
-    drawn = Drawn(None, None, world.mj_model, {"agents": ["walker"], "bodies": {"walker": {"eye": world.bodies["walker"].eye}}}, print)
+    drawn = OverlayCanvas(
+        None, None, world.mj_model, {"agents": ["walker"], "bodies": {"walker": {"eye": world.bodies["walker"].eye}}}, print
+    )
     ((x, y, z, radius),) = Frustum(drawn).heads(world.mj_data)
     head = world.mj_model.geom("walker_head").id
     assert [x, y, z] == pytest.approx(world.mj_data.geom_xpos[head], abs=1e-3)

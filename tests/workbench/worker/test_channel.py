@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from workbench.worker.channel import Channel
-from workbench.worker.messages import At, News, Notice, Reply, Start, State, framed
+from workbench.worker.messages import NewEvents, Notice, Position, Reply, Start, State, framed
 
 
 def state(tick: int) -> State:
@@ -47,7 +47,7 @@ def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Channel) -
     link.show(state(2), 1, [b"2"])
     assert not link.idle
     link.post(Reply(id=7))
-    assert list(link._messages) == [News(first=0, events=[b"1", b"2"]), state(2), Reply(id=7)]
+    assert list(link._messages) == [NewEvents(first=0, events=[b"1", b"2"]), state(2), Reply(id=7)]
     assert not link.idle
     link.post(Reply(id=8))
     link.show(state(3), 2, [])
@@ -57,5 +57,5 @@ def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Channel) -
 
 def test_where_a_run_is_busy_comes_after_what_has_happened_up_to_there(link: Channel) -> None:
     link.show(state(1), 0, [b"1"])
-    link.post(At(file="model.py", line=3))
-    assert list(link._messages) == [News(first=0, events=[b"1"]), state(1), At(file="model.py", line=3)]
+    link.post(Position(file="model.py", line=3))
+    assert list(link._messages) == [NewEvents(first=0, events=[b"1"]), state(1), Position(file="model.py", line=3)]

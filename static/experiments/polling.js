@@ -7,7 +7,7 @@ import { pathOf } from "./list.js";
 const BETWEEN = 1000; // the least interval between two requests [ms]
 
 /** Asks one question, at most once at a time, and rests after each answer for at least twice as long as it took. */
-class Asker {
+class Poller {
   constructor(path, found) {
     this.path = path;
     this.found = found;
@@ -46,11 +46,11 @@ class Asker {
  * @param path What is asked for; null for nothing.
  * @param version Whatever changes when the answer may be another one.
  */
-export function useFresh(path, version) {
+export function usePolled(path, version) {
   const found = useSignal({ path: null, answer: null, error: null, waiting: false });
   const asker = useRef(null);
   useEffect(() => {
-    asker.current = path === null ? null : new Asker(path, found);
+    asker.current = path === null ? null : new Poller(path, found);
     if (path !== null) found.value = { ...found.peek(), waiting: true };
     return () => asker.current?.leave.abort();
   }, [path]);
@@ -62,6 +62,6 @@ export function useFresh(path, version) {
  * experiment. */
 export function useFacts(experiment) {
   const wanted = experiment && pathOf(experiment.id);
-  const { path, answer, error } = useFresh(wanted, experiment?.state);
+  const { path, answer, error } = usePolled(wanted, experiment?.state);
   return path === wanted ? { facts: answer?.facts ?? null, error } : { facts: null, error: null };
 }

@@ -1,4 +1,4 @@
-"""Reads the colours that the 3D view and the HTML replay share, from `static/scene/palette.json`."""
+"""Reads the colours that the 3D view and the HTML replay share, from `static/scene/colours.json`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from workbench.shipped import static
 @cache
 def palette() -> dict[str, Any]:
     """Returns the colours in the file: of sky and ground by theme, of outlines and of clothes."""
-    return json.loads((static() / "scene" / "palette.json").read_text(encoding="utf-8"))
+    return json.loads((static() / "scene" / "colours.json").read_text(encoding="utf-8"))
 
 
 def channels(colour: str) -> tuple[int, int, int]:
