@@ -95,7 +95,7 @@ def _node(node: SyntaxTreeNode, listing: ModelListing) -> Iterator[Node]:
             yield {"tag": "code", "children": [node.content], **({"settings": settings} if settings else {})}
             later = [name for name in given if name in listing.later]
             if later:
-                yield f" ({later[0]} is no parameter, because other code, such as an import, comes before it)"
+                yield f" ({later[0]} is not a parameter, because other code, such as an import, comes before it)"
         case "code_block" | "fence":
             yield {"tag": "pre", "children": [node.content]}
         case "image":

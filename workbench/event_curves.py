@@ -90,12 +90,12 @@ class EventCurves:
         self.logged: defaultdict[str, list[LoggedEvent]] = defaultdict(list)
         """By source: the events from which activations follow; see `workbench.chunk_curves`."""
         self.times: defaultdict[int, RunTimes] = defaultdict(RunTimes)
-        """By the number of the run."""
+        """The times of each run, by its number."""
         self.latest = 1
         """The number of the run of the last event."""
 
     def take(self, events: Iterable[TraceEvent]) -> None:
-        """Takes the next events, with the times of the whole run."""
+        """Adds the next events, with the times of the whole run."""
         for event in events:
             time, source, kind, data = event
             number, self.next = self.next, self.next + 1

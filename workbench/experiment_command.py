@@ -40,10 +40,10 @@ class ExperimentFacts(ExperimentEvent, frozen=True, kw_only=True, tag="facts"):
     """What is known of an experiment before it runs."""
 
     name: str
-    """That of the design."""
+    """The name of the design."""
     description: str
     trials: int
-    """Their number."""
+    """The number of trials."""
     trials_a_cell: int
     factors: dict[str, list[Any]]
     """Levels by name."""

@@ -73,10 +73,12 @@ def means(
     In a figure `by_order` of trials, it is the mean of the participants' means.
 
     Two experiments are compared over the conditions that both have and in which no trial failed: the means of both at one place are over
-    the same conditions, unless it is a place in the order of trials. `failed` is the number of conditions in which a trial of either
-    failed, and the numbers of trials there (or of values, of a measure that has several a trial) with a value in each of the two.
-    `left_out` are the numbers of conditions, and of trials, that only one of them has. `apart` are the factors of which the two have no
-    level in common.
+    the same conditions, unless it is a place in the order of trials. Then the result has
+
+    - `failed`: `conditions`, the number of conditions in which a trial of either experiment failed; `trials`, how many trials of each are
+      left out because of that (or values, of a measure that has several in a trial);
+    - `left_out`: the numbers of conditions, and of trials, that only one of the two has;
+    - `apart`: the factors of which the two have no level in common.
 
     Args:
         paths: The tables.
@@ -103,7 +105,7 @@ def means(
 def _compared(mine: _Trials, theirs: _Trials) -> dict[str, Any]:
     """Returns the points of two experiments, and what is left out, see `means`."""
     if mine.unit and theirs.unit and mine.unit != theirs.unit:
-        raise TableError(f"its {mine.figure.measure} is in {theirs.unit}, and here in {mine.unit}")
+        raise TableError(f"'{mine.figure.measure}' must have the same unit in both experiments (got {mine.unit} and {theirs.unit})")
     both = mine.conditions(), theirs.conditions()
     failed = both[0].failed | both[1].failed
     trials = [one.leave_out(failed) for one in both]
@@ -300,8 +302,8 @@ def _pooled(conditions: Sequence[Sequence[tuple[Any, int, float]]]) -> list[tupl
 def _mean(conditions: Sequence[Sequence[tuple[Any, int, float]]]) -> dict[str, Any]:
     """Returns the mean of the conditions' means with its standard error over participants; None if a condition has only one.
 
-    The error is that of the same mean of independent participants: each participant's distances from the means of the conditions weigh
-    as in the mean, and those in a condition of n participants are larger by the root of n / (n - 1) than they are from their own mean.
+    Participants are independent. A participant's deviations from the means of the conditions have the weights that they have in the mean;
+    in a condition of n participants they are multiplied by the root of n / (n - 1), because its mean is one of these n values.
 
     Args:
         conditions: The participants of each: name, number of trials and their mean.

@@ -170,8 +170,8 @@ async def means(
     With `over`, the measure has a column for each number, `measure_1`, `measure_2`, ..., and `over` is the name of the column of numbers.
 
     `beside` is another experiment: then the means of both are over the conditions that both have and in which no trial failed. `{points,
-    left_out, beside: {points, left_out}, failed, apart}`: `left_out: {conditions, trials}` are those that only one of them has, `failed:
-    {conditions, trials: [of one, of the other]}` those in which a trial failed, and `apart` the factors without a common level.
+    left_out: {conditions, trials}, beside: {points, left_out}, failed: {conditions, trials: [of one, of the other]}, apart}`; see
+    `workbench.experiment_means.means`.
     """
     names = [experiment] if beside is None else [experiment, beside]
     facts: list[ExperimentFacts] = []

@@ -161,7 +161,7 @@ class Table:
                 raise TableError(f"'{measure}' has no numbers" if measure in self._types else f"there is no column '{measure}'")
             return found
         if over in self._types:
-            raise TableError(f"'{over}' is a column of the trials")
+            raise TableError(f"over: must not be the name of a column of the trials (got '{over}')")
         ends = {name: name.removeprefix(f"{measure}_") for name in self._types if name.startswith(f"{measure}_")}
         found = sorted((int(end), name) for name, end in ends.items() if end.isascii() and end.isdigit() and len(end) < 9)
         found = [(number, name) for number, name in found if self._types[name] in NUMBERS][:MAX_NUMBERS]

@@ -79,8 +79,7 @@ class Open(PageMessage):
     record: bool = True
     run: bool = False
     real_time: bool = False
-    """Whether a run with a body goes in real time until a speed is chosen, and overlays, a chosen speed, and for the same model the
-    breakpoints are those of the session shown last; otherwise every run goes as fast as possible."""
+    """Whether the session is for somebody who watches it; see `Sessions.begin`. Otherwise every run goes as fast as possible."""
 
 
 class CommandRequest(PageMessage):

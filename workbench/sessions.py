@@ -104,9 +104,9 @@ class Sessions:
             seed: None for a new random seed.
             record: Whether the run is recorded.
             run: Whether the run starts going at once, instead of paused.
-            real_time: Whether the session begins as users expect who watch it: a run with a body goes in real time until a speed is
-                chosen, and overlays, a chosen speed, and for the same model the breakpoints are those of the session that a page shows, or
-                else of the newest. Otherwise it goes as fast as possible.
+            real_time: Whether the session is for somebody who watches it: a run with a body goes in real time until a speed is chosen,
+                and the session takes over overlays, a chosen speed, and for the same model the breakpoints, from the session that a page
+                shows, or else from the newest. Otherwise it goes as fast as possible.
 
         Raises:
             Actr3dError: If there is no such file, or there are too many sessions.

@@ -590,7 +590,7 @@ def _check_names(names: Iterable[Any], where: str) -> None:
     """
     for name in names:
         if not isinstance(name, str) or not name or not name.isprintable():
-            raise DesignError(f"{where}: names must be texts of printable characters (got {name!r})", where.rpartition(".")[2])
+            raise DesignError(f"{where}: names must be non-empty strings of printable characters (got {name!r})", where.rpartition(".")[2])
 
 
 def _key(value: Any) -> Any:

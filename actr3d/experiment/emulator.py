@@ -1,8 +1,9 @@
 """What a model's means would be at values of its parameters that were not tried: a Gaussian process through those that were.
 
-From it come the values that fit data best, and the intervals of the parameters. An interval has the values of a parameter at which the
-least sum of squared differences over all other parameters, relative to that over all of them, is at most 1 + F / (n - p), with the 95 %
-quantile of the F distribution with 1 and n - p degrees of freedom: n means with normal errors of one unknown variance, and p parameters.
+From it come the values that fit data best, and the intervals of the parameters. The interval of a parameter is a profile: all its values at
+which S / S0 <= 1 + F / (n - p). S is the least sum of squared differences when all other parameters are free, S0 the least when all
+parameters are free, and F the 95 % quantile of the F distribution with 1 and n - p degrees of freedom, for n means with normal errors of
+one unknown variance and p parameters.
 Sources: Bates and Watts (1988), Nonlinear Regression Analysis and Its Applications, section 6.1 (profile t); Raue et al. (2009),
 Bioinformatics 25(15), for profile likelihoods; Rasmussen and Williams (2006), Gaussian Processes for Machine Learning, chapter 2.
 """

@@ -276,7 +276,7 @@ class Fit:
                 raise SettingError(f"--parameter {one.name}: has a value by --set, too ({plain_text(given[one.name])}); leave out one")
             if isinstance(default := defaults.get(one.name), (str, bool, list, tuple, dict)):
                 raise SettingError(
-                    f"--parameter {one.name}: is no number in the model (its default is {default!r}); only numbers are fitted"
+                    f"--parameter {one.name}: is not a number in the model (its default is {default!r}); only numbers are fitted"
                 )
             if one.name in seen:
                 ranges = f"{seen[one.name].low:g}..{seen[one.name].high:g} and {one.low:g}..{one.high:g}"

@@ -324,7 +324,7 @@ class Motor(WithParameters, Port):
         self._command(partial(self._want, name), "feel", name=name)
 
     def know(self, movement: str, posture: Any) -> None:
-        """Stores the size of the body in a posture in declarative memory, as if it had felt it at the end of a movement.
+        """Stores the size of the body in a posture, in the buffer and in declarative memory, as if it had felt it after a movement.
 
         Adults know their bodies before an experiment begins. So does an agent that calls this in `init`, without a movement: the size is
         computed from the body as it stands, with the noise of feeling it. `busy` is True until it is stored, at the end of the next tick.

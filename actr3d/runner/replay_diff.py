@@ -19,7 +19,7 @@ Thing = TypeVar("Thing")
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """The result of a replay."""
+    """Where a replay first differs from its recording."""
 
     ticks: int
     """How many ticks were compared."""

@@ -42,7 +42,7 @@ except KeyboardInterrupt:
 
 @dataclass(frozen=True, kw_only=True)
 class ReplayResult:
-    """The result of a replay."""
+    """The exit code and the text of a replay."""
 
     code: int
     """`AGREES`, `DIFFERS`, or `UNKNOWN` if neither is known."""

@@ -110,7 +110,6 @@ class Agents:
 
     def take(self, request: Request, answer: Any) -> None:
         """Delivers an answer to an agent, available from the next tick on."""
-        # `_take` is private because productions see every public name of a model.
         self._sch.call_after(0, request.port._take, (request, answer))  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
     @property

@@ -30,7 +30,7 @@ BITS = 64
 """Bits of the seed of a view's noise."""
 
 STATE = ("busy", "error", "watching")
-"""What the module tells productions about itself."""
+"""The attributes of the module that productions match."""
 
 
 class Vision(WithParameters, Searching):
@@ -213,7 +213,7 @@ class Vision(WithParameters, Searching):
         self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:
-        """Begins a bottom-up search, or lets it wait for the end of a top-down one. It replaces an earlier bottom-up search."""
+        """Begins a bottom-up search, or delays it until the end of a top-down one. It replaces an earlier bottom-up search."""
         for earlier in (self._bottom_up, self._waiting):
             if earlier is not None:
                 self._cancel(earlier)

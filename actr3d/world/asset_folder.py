@@ -79,7 +79,7 @@ class AssetFolder:
     def _content(self, name: str, whose: str) -> bytes:
         if self._recorded is not None:
             if not self._recorded:
-                raise self._error(f"{whose}'{name}' is not read: files that a text mentions are read only from a given folder")
+                raise self._error(f"{whose}'{name}' cannot be read: a description given as text has no folder of its own; give folder=")
             if name not in self._recorded:
                 raise self._error(f"{whose}no '{name}' among the files that were recorded{did_you_mean(name, self._recorded)}")
             return self._recorded[name]

@@ -123,7 +123,7 @@ class Body:
         self.hands: dict[str, Hand] = {self._short(name).removesuffix("_hand"): Hand(physics, name) for name in self.anatomy.hands}
         self.contacts = BodyContacts(physics, self.members, skin, tuple(self.hands.values()))
         self.reaches = reaches(model, self.members, self.touch_geoms)
-        """By moving part and degree of freedom (n, nv): the greatest way of the part's farthest point per unit of it [m]."""
+        """By moving part and degree of freedom (n, nv): how far the part's farthest point moves at most per unit of the latter [m]."""
         dofs = ActuatedDofs(physics, self.anatomy, self.base, every, self.members)
         cycle = None
         if self.anatomy.gait is not None:

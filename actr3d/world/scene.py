@@ -55,7 +55,7 @@ class Scene(Configuration):
         super().__post_init__()
         for part in self.parts:
             if isinstance(part, type):
-                raise WorldError(f"Scene.parts: {part.__name__} is a class; a part is made of it, as {part.__name__}(…)")
+                raise WorldError(f"Scene.parts: must be a part (got the class {part.__name__}; write {part.__name__}(…))")
             if not isinstance(part, Part):
                 raise WorldError(f"Scene.parts: {part!r} is not a part: it has no name or no add_to(mj_spec)")
             if "\0" in part.name or part.name != part.name.encode(errors="replace").decode():

@@ -112,7 +112,7 @@ class World:
     # -- stepping
 
     def step(self, steps: int = 1) -> None:
-        """Advances the physics by a number of steps: one tick, whose touches the skin remembers.
+        """Advances the physics by a number of steps (one tick), and stores the contacts of this tick.
 
         Unfinished commands choose their speeds before it, and in a long one every 10 ms.
 

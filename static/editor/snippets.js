@@ -43,7 +43,7 @@ class \${Wall}(Feature):
 
 @detector(\${Wall})
 def \${walls}(view, *, least: Metres = \${1.0}):
-    """Returns everything that is at least so wide."""
+    """Returns all things of at least this width [m]."""
     things = DETECTORS["obstacle"](view)
     return tuple(\${Wall}(distance=one.distance, direction=one.direction, width=one.width) for one in things if one.width >= least)
 `,

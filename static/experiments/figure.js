@@ -156,7 +156,7 @@ function comparisonText(pair, other, over) {
   const { conditions: failed } = pair.failed;
   const whole = failed > 0 ? " in which no trial failed" : "";
   if (!isDrawn(pair)) {
-    return `${experimentText(other)} is not compared: it has no condition${whole} in common with this experiment${pair.apart.length > 0 ? ` (no level of ${pair.apart.map(columnText).join(" or ")})` : ""}.`;
+    return `${experimentText(other)} is not compared: it has no condition${whole} in common with this experiment${pair.apart.length > 0 ? ` (the two share no level of ${pair.apart.map(columnText).join(" or ")})` : ""}.`;
   }
   const of = (trials, whose) => `${counted(trials, over ? "value" : "trial")} of ${whose}`;
   const names = ["this experiment", experimentText(other)];

@@ -221,7 +221,7 @@ function presentValue(curve, { present, end, running, period }) {
   return valueAt(curve, running || present - last < period ? Math.min(present, last) : present);
 }
 
-/** Returns the labels of a plot's curves, at most so wide: if one leaves no room for a value, without the words that all begin or end with. */
+/** Returns the labels of a plot's curves, at most `room` wide [px]: if one leaves no room for a value, without the words that all begin or end with. */
 function labelsOf(plot, room) {
   const names = plot.series.map(({ name }) => shortName(name, plot));
   if (names.every((name) => widthOf(name, SMALL) <= room - BESIDE - VALUE)) return names;

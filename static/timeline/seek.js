@@ -35,10 +35,11 @@ export function goTicks(ticks) {
   seek(Math.max(0, destination.peek() + ticks * (session.peek()?.period || 0.01)));
 }
 
-/** Goes to a time that the run has reached [s]; to the newest if `wish`, from which the time was computed, is as late. */
-export function travel(time, wish = time) {
+/** Goes to a time that the run has reached [s]. `requested` is the time before it was rounded to a tick: if it is not before the newest
+ * time, this goes to the newest time. */
+export function travel(time, requested = time) {
   if (!alive.peek()) return;
-  wanted.value = wish >= furthest.peek() ? furthest.peek() : Math.min(Math.max(0, time), furthest.peek());
+  wanted.value = requested >= furthest.peek() ? furthest.peek() : Math.min(Math.max(0, time), furthest.peek());
   if (!going) go();
 }
 

@@ -578,7 +578,9 @@ def test_an_experiment_without_a_common_condition_is_not_drawn_beside(blank: Pag
     blank.get_by_label("Compare with").select_option("theirs")
     warning = blank.locator("#drawn .problem")
     expect(warning).to_have_text(
-        re.compile(r"^theirs .* is not compared: it has no condition in common with this experiment \(no level of ink or goal\)\.$")
+        re.compile(
+            r"^theirs .* is not compared: it has no condition in common with this experiment \(the two share no level of ink or goal\)\.$"
+        )
     )
     expect(blank.locator("#drawn .point")).to_have_count(2)
     blank.get_by_label("Compare with").select_option("")
@@ -694,12 +696,12 @@ def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(bl
 def test_an_experiment_that_cannot_be_compared_is_named_as_elsewhere(pages: Callable[..., Page]) -> None:
     page = pages(refusals=True)
     points = [{"at": [n], "mean": 0.1, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
-    refused = {"error": "its rt is in ms, and here in s"}
+    refused = {"error": "'rt' must have the same unit in both experiments (got s and ms)"}
     page.route(
         "**/means?*",
         lambda route: route.fulfill(status=409, json=refused) if "beside=" in route.request.url else route.fulfill(json=means(points)),
     )
     page.evaluate(TWO_EXPERIMENTS)
     page.get_by_label("Compare with").select_option("theirs")
-    expect(page.locator("#drawn .problem")).to_have_text(re.compile(r"^theirs [^ ].* is not compared: its rt is in ms, and here in s\.$"))
+    expect(page.locator("#drawn .problem")).to_have_text(re.compile(rf"^theirs [^ ].* is not compared: {re.escape(refused['error'])}\.$"))
     expect(page.locator("#drawn .point")).to_have_count(2)

@@ -195,11 +195,11 @@ INVALID: list[tuple[dict[str, Any], str]] = [
     ({"factors": {}, "derive": drawn_value}, r"Design\.derive\['x'\]: a distribution belongs to"),
     ({"derive": next_level}, r"Design\.derive: must not return 'a', which is a factor; give it another name"),
     ({"derive": own_seed}, r"Design\.derive: must not return 'seed', which is a column of every table of trials"),
-    ({"groups": {"": Group()}}, r"Design\.groups: names must be texts of printable characters \(got ''\)"),
-    ({"groups": {1: Group()}}, r"Design\.groups: names must be texts of printable characters \(got 1\)"),
-    ({"groups": {"\ud800": Group()}}, r"Design\.groups: names must be texts of printable characters \(got '\\ud800'\)"),
-    ({"factors": {2: [1]}}, r"Design\.factors: names must be texts of printable characters \(got 2\)"),
-    ({"settings": {"": 1}}, r"Design\.settings: names must be texts of printable characters \(got ''\)"),
+    ({"groups": {"": Group()}}, r"Design\.groups: names must be non-empty strings of printable characters \(got ''\)"),
+    ({"groups": {1: Group()}}, r"Design\.groups: names must be non-empty strings of printable characters \(got 1\)"),
+    ({"groups": {"\ud800": Group()}}, r"Design\.groups: names must be non-empty strings of printable characters \(got '\\ud800'\)"),
+    ({"factors": {2: [1]}}, r"Design\.factors: names must be non-empty strings of printable characters \(got 2\)"),
+    ({"settings": {"": 1}}, r"Design\.settings: names must be non-empty strings of printable characters \(got ''\)"),
     ({"measures": ["rt", "a"]}, r"Design\.measures: 'a' is already a column of the trials; rename it"),
     ({"measures": ["size"]}, r"Design\.measures: 'size' is already a column of the trials; rename it"),
     ({"measures": ["seed"]}, r"Design\.measures: 'seed' is already a column of the trials; rename it"),
@@ -228,8 +228,8 @@ def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> Non
         (lambda: Design(order="any"), r"Design\.order: must be one of"),  # type: ignore[arg-type]
         (lambda: Group(participants=0), r"Group\.participants: must be >= 1 \(got 0\)"),
         (lambda: Group(parameters={"a": Group}), r"Group\.parameters\['a'\]: must be a number, text, .* \(got <class '.*Group'>\)"),
-        (lambda: Group(parameters={1: 2}), r"Group\.parameters: names must be texts of printable characters \(got 1\)"),  # type: ignore[dict-item]
-        (lambda: Measured(name="m", over=""), r"Measured\.over: names must be texts of printable characters \(got ''\)"),
+        (lambda: Group(parameters={1: 2}), r"Group\.parameters: names must be non-empty strings of printable characters \(got 1\)"),  # type: ignore[dict-item]
+        (lambda: Measured(name="m", over=""), r"Measured\.over: names must be non-empty strings of printable characters \(got ''\)"),
         (lambda: Normal(mean="x", sd=1), r"Normal\.mean: must be a number \(got 'x'\)"),  # type: ignore[arg-type]
         (lambda: Normal(mean=1, sd=-1), r"Normal\.sd: must be >= 0 \(got -1.0\)"),
     ],

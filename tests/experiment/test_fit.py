@@ -515,7 +515,7 @@ def test_parameters_that_the_model_does_not_have_are_refused(tmp_path: Path) -> 
 def test_a_parameter_that_is_no_number_or_has_a_value_is_refused(tmp_path: Path) -> None:
     line = LINE.replace("noise = 0.1", "noise = 0.1\nshape = 'line'")
     with pytest.raises(
-        SettingError, match=r"^--parameter shape: is no number in the model \(its default is 'line'\); only numbers are fitted"
+        SettingError, match=r"^--parameter shape: is not a number in the model \(its default is 'line'\); only numbers are fitted"
     ):
         fit_of(tmp_path, None, "shape=0..1", line=line)
     with pytest.raises(SettingError, match=r"^--parameter slope: has a value by --set, too \(2\); leave out one"):

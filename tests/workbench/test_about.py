@@ -45,7 +45,7 @@ def test_a_value_to_try_of_a_variable_after_other_code_says_why_it_is_no_button(
     text = "T\n\nTry `word = 'green'`, `width = 2` and `other = 1`.\n"
     nodes = about(text, "width = 1\nimport math\nword = 'red'\n")["nodes"]
     assert [one.get("settings") for one in elements(nodes) if one["tag"] == "code"] == [None, {"width": 2}, None]
-    why = " (word is no parameter, because other code, such as an import, comes before it)"
+    why = " (word is not a parameter, because other code, such as an import, comes before it)"
     assert texts(nodes) == f"Try word = 'green'{why}, width = 2 and other = 1."
     first = about(text, "word = 'red'\nwidth = 1\nimport math\n")["nodes"]
     assert [one.get("settings") for one in elements(first) if one["tag"] == "code"] == [{"word": "green"}, {"width": 2}, None]

@@ -464,7 +464,7 @@ def test_means_of_a_measure_with_several_numbers(workbench: Served) -> None:
     for query, problem in (
         ({"measure": "rt", "x": "n"}, "there is no column 'rt'"),
         ({"measure": "luck", "x": "n", "over": "block"}, "there are no columns 'luck_1', 'luck_2', ... with numbers"),
-        ({"measure": "rt", "x": "n", "over": "n"}, "'n' is a column of the trials"),
+        ({"measure": "rt", "x": "n", "over": "n"}, "over: must not be the name of a column of the trials (got 'n')"),
     ):
         assert workbench.get(path, params=query).json()["error"] == problem
 

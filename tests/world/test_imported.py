@@ -380,7 +380,7 @@ def test_broken_files_are_refused_with_file_and_line(text: str, message: str, tm
         ({"path": "one.xml", "folder": "deeper"}, r"'one\.xml' does not lie in the folder 'deeper'"),
         (
             {"text": asset('<mesh file="one.stl"/>')},
-            r"'one\.stl' is not read: files that a text mentions are read only from a given folder",
+            r"'one\.stl' cannot be read: a description given as text has no folder of its own; give folder=",
         ),
         ({"text": "<mujoco \ud800/>"}, r"the text cannot be written in UTF-8"),
         ({"path": "loop.xml"}, r"loop\.xml' is not a readable path: Symlink loop|no file 'loop\.xml'"),

@@ -119,7 +119,7 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
         (lambda: doorway().step(-1), r"World\.step: must be a whole number of steps, >= 0 \(got -1\)"),
         (lambda: doorway().set_aperture_width(1, 3), "no aperture '3' in this scene"),  # pyright: ignore[reportArgumentType]
-        (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
+        (lambda: Scene(parts=(Floor,)), r"must be a part \(got the class Floor; write Floor\(…\)\)"),
         (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' is no valid name"),
         (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' is no valid name"),
         (
@@ -270,7 +270,7 @@ def test_no_step_changes_nothing_and_whole_numbers_of_numpy_are_whole() -> None:
 
 
 def test_errors_of_scenes_name_what_is_wrong_on_one_line() -> None:
-    with pytest.raises(WorldError, match=r"Scene\.parts: Wall is a class; a part is made of it, as Wall\(…\)"):
+    with pytest.raises(WorldError, match=r"Scene\.parts: must be a part \(got the class Wall; write Wall\(…\)\)"):
         Scene(parts=(Wall,))
     with pytest.raises(WorldError, match="the scene cannot be compiled: ") as caught:
         World(Scene(parts=(Mannequin(name="a"), SimpleObject(name="a_torso", position=(3, 0, 1)))))

@@ -24,9 +24,9 @@ from workbench.geom_colours import dress
 from workbench.html_replay.change_texts import ChangeTexts, widths_in
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.loader import listing_of
-from workbench.scene_colours import palette
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
+from workbench.scene_colours import palette
 from workbench.scene_framing import SceneFraming
 from workbench.shipped import static
 from workbench.time_text import time_text

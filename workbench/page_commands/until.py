@@ -54,7 +54,7 @@ class Until(PageCommand):
         check_slots(self.pattern or "", sources, names.modules if is_fed else (), start.folder)
         goal = None if self.time is None else round(self.time * MICROSECONDS)
         if goal is not None and goal <= run.clock:
-            raise Actr3dError(f"it is {time_text(seconds(run.clock))} already; a click on the timeline goes back")
+            raise Actr3dError(f"the time must be after the present one, {time_text(seconds(run.clock))}; a click on the timeline goes back")
         controller.go(
             goal=goal,
             goal_reason="" if self.time is None else f"at {time_text(self.time)}",

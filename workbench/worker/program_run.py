@@ -163,7 +163,7 @@ class ProgramRun(ControlledRun):
         self._event_times = array("q")
         """The time of the clock at each event [us]."""
         self._run_times: defaultdict[int, RunTimes] = defaultdict(RunTimes)
-        """By the number of the run."""
+        """The times of each run, by its number."""
         self._failed = ""
         """The memory from which the last retrieval failed; empty if it did not, or if a production has fired since."""
         self._furthest: int = 0
@@ -182,7 +182,7 @@ class ProgramRun(ControlledRun):
         self._initial_widths: dict[int, dict[str, float]] = {}
         """The widths of apertures at the start of each simulation [m], by its number among all runs; kept likewise."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
-        """The numbers of the latest runs, these, and their models."""
+        """The latest runs: number, run and model."""
         self._runs = 0
         """How many runs there have been."""
         self._shown: SimulationDisplay | None = None

@@ -29,7 +29,7 @@ CONTACTS = 500
 NEAR = 0.05
 """How much farther than its speed allows a body may have moved between two points that are joined [m]."""
 NUMBERS = 4
-"""So many numbers are stored of a point."""
+"""The number of values that are stored of a point."""
 MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 

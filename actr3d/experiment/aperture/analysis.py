@@ -172,8 +172,8 @@ def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> lis
     parts += _left_out(people, "boundary")
     parts.append(
         "The boundary of the descriptive and of the replication variant is a parameter of the model (1.16, 1.139): only its spread follows "
-        "from the noise of vision. That of the predictive variant follows from its experiences: it says what came of the one that is most "
-        "active."
+        "from the noise of vision. The boundary of the predictive variant follows from its experience: it predicts the outcome of its most "
+        "active memory."
     )
     return [
         Section(title="Constraints on a model of people", parts=[_constraints(Findings([]).all(judged=judged))]),
@@ -185,8 +185,8 @@ def _constraints(constraints: Sequence[Constraint]) -> Table:
     words = {True: "met", False: "not met", None: "not decided"}
     rows = [{"number": str(one.number), "constraint": one.says, "result": words[one.met], "found": one.found} for one in constraints]
     note = (
-        "As in the manual, «Human data and sources». Participants are the unit; the ratios of the fourth and the ninth are those of all "
-        "trials, with intervals at least as wide as participants differ."
+        "As in the manual, «Human data and sources». Participants are the unit; the ratios of the fourth and the ninth are fitted to all "
+        "trials, with intervals at least as wide as the spread between participants."
     )
     return Table(name="constraints", title="The nine constraints", frame=pandas().DataFrame(rows), note=note)
 

@@ -1,7 +1,8 @@
 """The constraints on a model of people who pass apertures, by their numbers in docs/human-data.md.
 
-Participants, not trials, are the unit of analysis: means of participants are compared. Only the critical ratio of a cell is that of all
-its trials, as the ratios of a single participant are more than 0.1 apart; its interval is as wide as participants differ, at least.
+Participants, not trials, are the unit of analysis: means of participants are compared. There is one exception: the critical ratio of a
+cell is fitted to all its trials, because the apertures of one participant are more than 0.1 shoulder widths apart. Its interval is at least
+as wide as the spread between participants.
 """
 
 from __future__ import annotations

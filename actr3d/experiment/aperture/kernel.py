@@ -18,13 +18,19 @@ COLUMNS = RIGHT + 1
 
 @cache
 def take_sample() -> Callable[..., float]:
-    """Returns the function that measures a body before a wall, and writes a row of samples, as if no part of it is between the faces now.
+    """Returns the compiled function that measures a body before a wall and writes a row of samples, with NaN as LEFT and RIGHT.
 
-    Its arguments are: the table of samples (n, COLUMNS) and the number of the row; the time of the joints [s], and by how much they are
-    ahead of the positions [s]; the position of the body's axis (3,), of its left and its right shoulder (3,) [m]; the positions and speeds
-    of all joints; (k, 2) the indices in these of the joints that turn the shoulders, and (k,) their shares; (m,) what gait adds to joints,
-    and their shares; the middle of the wall x, y [m], and the direction through it x, y. It returns the distance of the axis before the
-    wall [m].
+    Its arguments:
+
+    - table (n, COLUMNS), row: the samples, and the number of the one that is written;
+    - end, ago: the time of the joints, and by how much they are ahead of the positions [s];
+    - axis, left, right (3,): the positions of the body's axis and of its shoulders [m];
+    - qpos, qvel: the positions and speeds of all joints;
+    - joints (k, 2), shares (k,): the indices in these of the joints that turn the shoulders, and by how much each of them turns them;
+    - gait (m,), gait_shares (m,): what gait adds to joints, and by how much each of these turns the shoulders;
+    - wall_x, wall_y, ahead_x, ahead_y: the middle of the wall [m], and the direction through it.
+
+    It returns the distance of the axis before the wall [m].
     """
     return kept(_take_sample, Path(__file__))
 

@@ -163,8 +163,8 @@ def run_tests(results: Results, measure: str) -> Tests:
                 notes.append("Not tested: the mixed model, because it leaves no residual beyond rounding.")
     if mixed is not None and sizes.min() < MIN_FOR_BOOTSTRAP:
         notes.append(
-            f"With fewer than {MIN_FOR_BOOTSTRAP} participants in a group, the p values of the mixed model's Wald tests are too small, above all for the "
-            "effect of group. Where the analysis of variance tests the same effect, prefer it."
+            f"With fewer than {MIN_FOR_BOOTSTRAP} participants in a group, the p values of the mixed model's Wald tests are "
+            "too small, above all for the effect of group. Where the analysis of variance tests the same effect, prefer it."
         )
     # Of its attempts to fit, only the end matters: `_mixed_model` says if it is not known.
     notes += [f"Note of a library: {text}" for text in warned if "optimization" not in text]

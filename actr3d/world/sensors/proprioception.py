@@ -100,7 +100,7 @@ def _within(joint: Joint) -> tuple[float, float]:
 
 @sensor
 def proprioception(body: Body) -> Proprioception:
-    """Senses at once the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
+    """Senses together the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
     walks = body.anatomy.walking_servos is not None
     box = body.bounding_box("body")
     depth, width, height = box.size
