@@ -42,7 +42,7 @@ def recordings(workbench: Served) -> Iterator[Path]:
     """The folder of recordings, empty before and after."""
     folder = workbench.folder / ".workbench" / "recordings"
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    folder.mkdir(parents=True, exist_ok=True)  # a run of an earlier test may still be written
     yield folder
     shutil.rmtree(folder, ignore_errors=True)
 
