@@ -176,7 +176,7 @@ def test_from_an_hour_on_times_are_in_hours_minutes_and_seconds(desk: Desk, tmp_
     talk = desk.begin(tmp_path, IDLE)
     talk.say("until", time=4512.3)
     talk.wait(lambda: talk.state["reason"] == "at 1:15:12.30")
-    with pytest.raises(RefusedError, match=r"it is 1:15:12\.30 already"):
+    with pytest.raises(RefusedError, match=r"the time must be after the present one, 1:15:12\.30;"):
         talk.say("until", time=7)
 
 
