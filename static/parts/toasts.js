@@ -19,22 +19,23 @@ export function Toasts() {
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [latest]);
   const shown = toast.value;
+  const isHeld = useSignal(false);
+  useEffect(() => {
+    if (!shown || isHeld.value) return undefined;
+    const timer = setTimeout(() => (toast.value = null), SHOWN);
+    return () => clearTimeout(timer);
+  }, [shown, isHeld.value]);
   return html`<div class="toasts" aria-live="assertive">
-    ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages" ? html`<${Toast} notice=${shown} />` : null}
+    ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages" ? html`<${Toast} notice=${shown} isHeld=${isHeld} />` : null}
   </div>`;
 }
 
-/** A notice, shown for a while, and as long as the pointer or the focus is in it. */
-function Toast({ notice }) {
+/** A notice; `isHeld` is set while the pointer or the focus is in it. */
+function Toast({ notice, isHeld }) {
   const place = useRef(null);
-  const isHeld = useSignal(false);
   const close = () => (toast.value = null);
   const leave = () => (isHeld.value = place.current?.matches(":hover, :focus-within"));
-  useEffect(() => {
-    if (isHeld.value) return undefined;
-    const timer = setTimeout(close, SHOWN);
-    return () => clearTimeout(timer);
-  }, [notice, isHeld.value]);
+  useEffect(() => () => (isHeld.value = false), []);
 
   function read() {
     close();

@@ -380,6 +380,21 @@ def test_a_message_stays_while_the_pointer_or_the_focus_is_in_it(page: Page) -> 
     goes(toast)
 
 
+def test_a_message_does_not_come_back_after_the_messages_were_read(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.clock.install()
+    for held in (False, True):
+        toast = offer(page)
+        if held:
+            toast.hover()
+        page.get_by_role("tab", name="Messages").press("Enter")
+        expect(toast).to_have_count(0)
+        page.clock.run_for(10_000)
+        page.get_by_role("tab", name="Buffers").press("Enter")
+        expect(page.get_by_role("tabpanel", name="Buffers")).to_be_visible()
+        expect(toast).to_have_count(0)
+
+
 def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) -> None:
     shows(page, "#status", "at its start")
 
