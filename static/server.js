@@ -2,7 +2,7 @@
 
 import { page } from "./address.js";
 import { frameBudget } from "./frame_budget.js";
-import { notify, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
+import { connected, events, forget, hurried, known, notify, opening, restarted, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation, the camera's code is compiled, too, which takes up to a minute.";
 /** The delay before a new attempt to reach the workbench [ms]. */

@@ -24,7 +24,7 @@ import { Tabs } from "./parts/tabs.js";
 import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
-import { notify, hurried, session } from "./store.js";
+import { hurried, notify, session } from "./store.js";
 import { show } from "./server.js";
 import { alone, embedded, follow, openWindow } from "./windows.js";
 

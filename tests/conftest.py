@@ -11,11 +11,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import settings
+
+from tests.helpers.paths import MODELS
 
 # The same examples each time, so that a failure is the change's own. EXPLORE=1 looks for new ones.
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -70,7 +71,7 @@ COMPILING = pytest.StashKey[subprocess.Popen[bytes]]()
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Begins to compile what models with a body need, while the processes collect the tests."""
     if "PYTEST_XDIST_WORKER" not in os.environ and session.config.getoption("numprocesses", None):
-        model = Path(__file__).parents[1] / "models" / "aperture_passage.py"
+        model = MODELS / "aperture_passage.py"
         run = f"from workbench.worker.fork_server import preload; from actr3d.cli import main; preload(); main(['run', {str(model)!r}])"
         compiling = subprocess.Popen([sys.executable, "-c", run], stdout=subprocess.DEVNULL)
         session.config.stash[COMPILING] = compiling

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import threading
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -24,7 +23,6 @@ from tests.helpers.motor_bodies import moving
 from tests.helpers.vision_scenes import seeing_for
 from tests.helpers.walkers import driving
 
-ROOT = Path(__file__).parent.parent
 EVERYTHING = """
 from actr3d.actr import *
 

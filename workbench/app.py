@@ -41,7 +41,7 @@ DAY = 86_400.0
 
 
 def make_app(
-    models: Path, gate: Gate, *, memory: int = MODEL_MEMORY, keeping: RetentionLimits | None = None, fork_server: ForkServer | None = None
+    models: Path, gate: Gate, *, memory: int = MODEL_MEMORY, limits: RetentionLimits | None = None, fork_server: ForkServer | None = None
 ) -> FastAPI:
     """Returns the application; its `state.leave` ends all runs and experiments.
 
@@ -49,7 +49,7 @@ def make_app(
         models: The models folder.
         gate: Checks access to the server.
         memory: Maximum memory of a model [MB]; 0 for no limit.
-        keeping: How many recordings are kept; None for the default.
+        limits: How many recordings are kept; None for the default.
         fork_server: The process from which workers are forked, if it has been started already.
     """
     folder = ModelFolder(models)
@@ -72,7 +72,7 @@ def make_app(
         app.state.later = later
         workers.begin()
         closing = asyncio.Event()
-        tidying = asyncio.create_task(keep_tidy(sessions, keeping or RetentionLimits(), closing))
+        tidying = asyncio.create_task(keep_tidy(sessions, limits or RetentionLimits(), closing))
         yield
         closing.set()
         await leave()
@@ -102,9 +102,9 @@ def make_app(
     return app
 
 
-async def keep_tidy(sessions: Sessions, keeping: RetentionLimits, closing: asyncio.Event) -> None:
+async def keep_tidy(sessions: Sessions, limits: RetentionLimits, closing: asyncio.Event) -> None:
     """Tidies the folder of the workbench at its start, and deletes old deleted files each day, until it is closing."""
-    await tidy(sessions, keeping)
+    await tidy(sessions, limits)
     while True:
         await asyncio.to_thread(empty_trash, sessions.folder.root)
         with suppress(TimeoutError):
@@ -112,14 +112,14 @@ async def keep_tidy(sessions: Sessions, keeping: RetentionLimits, closing: async
             return
 
 
-async def tidy(sessions: Sessions, keeping: RetentionLimits) -> None:
+async def tidy(sessions: Sessions, limits: RetentionLimits) -> None:
     """Deletes recordings beyond the limits, and unfinished files."""
     recordings = sessions.recordings
     for path in await asyncio.to_thread(recordings.all):
         if not is_complete(path):  # a killed process may have left it so, and then reading it completes the file
             with suppress(Actr3dError, OSError):
                 await sessions.listing.one(path.stem)
-    await asyncio.to_thread(recordings.tidy, keeping)
+    await asyncio.to_thread(recordings.tidy, limits)
 
 
 async def _manual(scope: Scope, receive: Receive, send: Send) -> None:

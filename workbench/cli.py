@@ -169,9 +169,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from workbench.app import make_app
         from workbench.server import serve
 
-        keeping = RetentionLimits(number=options.recordings, megabytes=options.recordings_size)
+        limits = RetentionLimits(number=options.recordings, megabytes=options.recordings_size)
         started = partial(_announce, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
-        app = make_app(folder, gate, memory=options.memory, keeping=keeping, fork_server=fork_server)
+        app = make_app(folder, gate, memory=options.memory, limits=limits, fork_server=fork_server)
         if interrupted.is_set():  # the import of a library may have swallowed the exception
             raise KeyboardInterrupt
         serve(app, listening, started)

@@ -90,7 +90,7 @@ class Recordings:
         there = (*(path.name for path in self._folder.iterdir()), *names_in_trash(self._root))
         return {name.removesuffix(".sqlite") for name in there if name.endswith(".sqlite")}
 
-    def tidy(self, keeping: RetentionLimits) -> None:
+    def tidy(self, limits: RetentionLimits) -> None:
         """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.
 
         A recording that another server may still write is kept. What a killed process has left of unfinished files is deleted, too.
@@ -100,7 +100,7 @@ class Recordings:
                 path.unlink(missing_ok=True)
         if self.labels.problem is not None:
             return
-        erased = recordings_over_limit(self._files(), keeping, self.labels.all().keys())
+        erased = recordings_over_limit(self._files(), limits, self.labels.all().keys())
         for path in erased:
             erase(path)
         self.labels.forget(path.stem for path in erased)

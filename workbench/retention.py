@@ -39,12 +39,12 @@ class RetentionLimits:
     """Maximum size of all recordings [MB]; 0 for no limit."""
 
 
-def recordings_over_limit(files: Sequence[Path], keeping: RetentionLimits, labelled: Collection[str] = ()) -> list[Path]:
+def recordings_over_limit(files: Sequence[Path], limits: RetentionLimits, labelled: Collection[str] = ()) -> list[Path]:
     """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled, and no run is writing.
 
     Args:
         files: All recordings.
-        keeping: The limits.
+        limits: The limits.
         labelled: The names of those with a label.
     """
 
@@ -58,7 +58,7 @@ def recordings_over_limit(files: Sequence[Path], keeping: RetentionLimits, label
         own = size_of(path)
         number += 1
         size += own
-        much = (keeping.number and number > keeping.number) or (keeping.megabytes and size > keeping.megabytes * 1_000_000)
+        much = (limits.number and number > limits.number) or (limits.megabytes and size > limits.megabytes * 1_000_000)
         if much and not is_kept(path):
             found.append(path)
             number -= 1

@@ -79,7 +79,7 @@ class Open(PageMessage):
     record: bool = True
     run: bool = False
     real_time: bool = False
-    """Whether the session is for somebody who watches it; see `Sessions.begin`. Otherwise every run goes as fast as possible."""
+    """Whether the session is for somebody who watches it; see `Sessions.open`. Otherwise every run goes as fast as possible."""
 
 
 class CommandRequest(PageMessage):

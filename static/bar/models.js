@@ -7,7 +7,7 @@ import { exactTime, TIMES, timeText } from "../parts/units.js";
 import { AGAIN, call, connect, request, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
-import { alive, notify, connected, isShared, running, session, shownRecording } from "../store.js";
+import { alive, connected, isShared, notify, running, session, shownRecording } from "../store.js";
 import { furthest, isBeyond, present, runTimeText, travel } from "../timeline/seek.js";
 import { alone, followWindows, passOn } from "../windows.js";
 

@@ -4,7 +4,7 @@ import { change } from "../bar/branch.js";
 import { command } from "../commands.js";
 import { isLeft } from "../server.js";
 import { runStatus } from "../run_status.js";
-import { alive, notify, events } from "../store.js";
+import { alive, events, notify } from "../store.js";
 import { commandText, isOfUser } from "../timeline/commands.js";
 import { present } from "../timeline/seek.js";
 import { changes } from "./changes.js";

@@ -3,7 +3,7 @@
 import { effect, untracked } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { call } from "../server.js";
-import { notify, isPresent, notices, session } from "../store.js";
+import { isPresent, notices, notify, session } from "../store.js";
 import { reveal } from "./code.js";
 import { documents, LARGEST, watching } from "./documents.js";
 import { markAt, marking, withMarks } from "./marks.js";

@@ -3,7 +3,7 @@
 import { computed, html } from "../vendor/preact.js";
 import { runModel } from "../bar/models.js";
 import { sinceNow } from "../server.js";
-import { notify, notices, session } from "../store.js";
+import { notices, notify, session } from "../store.js";
 import { documents, save, shown } from "./documents.js";
 import { openTab } from "../open_tab.js";
 

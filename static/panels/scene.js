@@ -19,7 +19,7 @@ import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
 import { runTimeText } from "../timeline/seek.js";
 import { openWindow } from "../windows.js";
-import { alive, notify, hasScene, running, session, state } from "../store.js";
+import { alive, hasScene, notify, running, session, state } from "../store.js";
 
 const open = signal(false); // whether the list of overlays is shown
 const view = remembered("view", "follow");

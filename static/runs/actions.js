@@ -6,7 +6,7 @@ import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { call, sendFile, sinceNow } from "../server.js";
-import { notify, me, session } from "../store.js";
+import { me, notify, session } from "../store.js";
 import { forgetRun, listRuns, runs } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";

@@ -5,7 +5,7 @@
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
 import { isLeft, request } from "../server.js";
-import { alive, notify, hurried, running, session, state, way } from "../store.js";
+import { alive, hurried, notify, running, session, state, way } from "../store.js";
 import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { exactTime } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
