@@ -79,7 +79,7 @@ Source: the names are those of the original ACT-R 3D; their definition for shoul
 @body_kind
 @dataclass(frozen=True, kw_only=True)
 class Mannequin(Configuration):
-    """A person: legs, pelvis, torso, shoulders, arms, head and eye. All but the legs have three hinges (yaw, pitch, roll); legs move with a gait.
+    """A person: legs, pelvis, torso, shoulders, arms, head and eye. All but the legs have three hinges each (yaw, pitch, roll).
 
     It moves over the floor at the commanded speed and stops immediately; obstacles stop it, too. With a `gait` it steps and sways,
     otherwise its legs glide. It stands facing its heading with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`,
