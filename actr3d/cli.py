@@ -402,19 +402,16 @@ def _experiment(options: argparse.Namespace) -> int:
 
     out = command.Output(json=options.json)
     if options.name is None:
-        if any((*_numbers(options).values(), options.trial is not None, options.record, options.out, options.resume, options.check)):
-            raise SettingError("which experiment? name a design, a file or the folder of an experiment before the options")
+        _refuse(options, (*BESIDE_TRIAL, "trial", "record"), "which experiment? name a design, a file or the folder of an experiment")
         return command.list_designs(out)
     if options.trial is not None or options.record is not None:
         if options.trial is None or options.record is None:
             raise SettingError("--trial ID and --record RECORDING are given together")
-        if idle := [f"--{name.replace('_', '-')}" for name in BESIDE_TRIAL if getattr(options, name)]:
-            raise SettingError(f"--trial: runs a trial again exactly as it was; leave out {' and '.join(idle)}")
+        _refuse(options, BESIDE_TRIAL, "--trial: runs a trial again exactly as it was")
         return command.run_again(options.name, options.trial, options.record, out)
     numbers = _numbers(options)
     if options.check:
-        if idle := [f"--{name.replace('_', '-')}" for name in BESIDE_CHECK if getattr(options, name)]:
-            raise SettingError(f"--check: runs two trials on this computer and stores nothing; leave out {' and '.join(idle)}")
+        _refuse(options, BESIDE_CHECK, "--check: runs two trials on this computer and stores nothing")
         return command.check(options.name, out, **numbers)
     if options.any_version and not options.resume:
         raise SettingError("--any-version: is for an experiment that is continued; add --resume")
@@ -442,10 +439,21 @@ def _report(options: argparse.Namespace) -> int:
     return 0
 
 
-BESIDE_TRIAL = ("set", "participants", "trials", "workers", "scheduler", "out", "resume", "any_version", "check")
-"""The options of `actr3d experiment` that mean nothing for one trial."""
 BESIDE_CHECK = ("workers", "scheduler", "out", "resume", "any_version")
 """The options of `actr3d experiment` that mean nothing for a check."""
+BESIDE_TRIAL = (*BESIDE_CHECK, "set", "participants", "trials", "check")
+"""The options of `actr3d experiment` that mean nothing for one trial."""
+
+
+def _refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
+    """Checks that none of some options is given.
+
+    Raises:
+        SettingError: If one is.
+    """
+    idle = [f"--{name.replace('_', '-')}" for name in names if (given := getattr(options, name)) is not False and given not in (None, [])]
+    if idle:
+        raise SettingError(f"{why}; leave out {' and '.join(idle)}")
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:
@@ -477,6 +485,6 @@ def _check_run(options: argparse.Namespace, words: list[str], arguments: list[st
     file: str | None = options.file
     if file is None:
         options.parser.error("the following arguments are required: FILE")
-    elif words and arguments.index(words[0]) < arguments.index(file):
-        options.parser.error(f"{words[0]} is not an option of every run; those of the model file come after its name")
+    elif (first := next((word for word in words if word.startswith("-")), None)) and arguments.index(first) < arguments.index(file):
+        options.parser.error(f"{first} is not an option of every run; those of the model file come after its name")
     options.words = words

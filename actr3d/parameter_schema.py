@@ -21,7 +21,7 @@ from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, g
 import annotated_types
 
 from actr3d.actr.kernel.source_code import parse, source_of_module, syntax_tree
-from actr3d.configuration import Live
+from actr3d.configuration import Live, is_finite
 from actr3d.errors import ConfigurationError
 from actr3d.values import escape_surrogates
 
@@ -108,7 +108,7 @@ class Parameter:
             return
         if self.takes in ("number", "whole number"):
             split = self.takes == "whole number" and isinstance(value, float)
-            if split or isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            if split or isinstance(value, bool) or not isinstance(value, (int, float)) or not is_finite(value):
                 raise ConfigurationError(f"{self.name}: must be a {self.takes} (got {value!r})")
             for sign, limit, holds in self._bounds:
                 if not holds(value, limit):

@@ -243,6 +243,12 @@ def test_bad_options_are_refused(tmp_path: Path, words: list[str], message: str)
     assert message in done.stderr
 
 
+def test_a_stray_word_after_the_file_is_said_to_be_one_also_if_an_option_has_the_same_value(tmp_path: Path) -> None:
+    (tmp_path / "model.py").touch()
+    done = run_command("run", "--seed", "5", "model.py", "5", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (2, "error: unexpected '5': a parameter is given as --name value\n")
+
+
 def test_a_missing_file_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "counting.py").touch()
     done = run_command("run", "countng.py", folder=tmp_path)

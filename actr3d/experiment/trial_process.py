@@ -25,6 +25,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.trial import Row, run_trial
+from actr3d.runner.before_exit import how_it_ended
 from actr3d.runner.traceback_report import traceback_report
 
 START = 600.0
@@ -74,7 +75,7 @@ class TrialProcess:
         Raises:
             ExperimentError: If the experiment cannot be loaded, `close` is called meanwhile, or its client has left.
         """
-        loaded, code, self.columns = False, "", {}
+        loaded, ending, self.columns = False, "", {}
         with self._busy:
             for _ in range(ATTEMPTS):
                 if self.client in LEFT:
@@ -92,10 +93,10 @@ class TrialProcess:
                     self.about |= answer["about"]
                     self.columns = answer["columns"]
                     return answer["row"]
-                code = self._code()
+                ending = self._ending()
         if not loaded:
-            raise ExperimentError(f"the process that loads the experiment ended {code}")
-        return {"end": "crash", "error": f"the trial ended its own process {code}"}
+            raise ExperimentError(f"the process that loads the experiment {ending}")
+        return {"end": "crash", "error": f"the process of the trial {ending}"}
 
     def end(self) -> None:
         """Ends the process; may be called from any thread. A load or a trial that this interrupts is tried again in a new process."""
@@ -195,16 +196,16 @@ class TrialProcess:
                     return None
         return json.loads(b"".join(parts))
 
-    def _code(self) -> str:
+    def _ending(self) -> str:
         """Returns how the process ended, and releases it."""
         assert self._process is not None
         try:
-            code = self._process.wait(5)
-        except subprocess.TimeoutExpired:  # it has closed its output and goes on
+            status = self._process.wait(5)
+        except subprocess.TimeoutExpired:  # it goes on
             self._end()
-            return "by closing its output"
+            return "closed its output"
         self._end()
-        return f"with exit code {code}" if code >= 0 else f"by the signal {signal.Signals(-code).name}"
+        return how_it_ended(status)
 
 
 def main(folder: str) -> None:

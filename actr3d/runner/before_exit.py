@@ -21,12 +21,21 @@ def _starts_another(path: Any, *_: Any, **__: Any) -> bool | None:
 def _raises(number: int) -> bool:
     """Returns whether a signal surely ends this process."""
     default = number == signal.SIGKILL or signal.getsignal(number) == signal.SIG_DFL
-    return default and signal.Signals(number).name not in _NOT_FATAL
+    return default and signal_name(number) not in _NOT_FATAL
 
 
 def signal_name(number: int) -> str:
     """Returns the name of a signal."""
     return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"
+
+
+def how_it_ended(status: int) -> str:
+    """Returns how a process ended: «ended with exit code 1», «was ended by SIGKILL».
+
+    Args:
+        status: Its exit code, or the negative number of a signal.
+    """
+    return f"ended with exit code {status}" if status >= 0 else f"was ended by {signal_name(-status)}"
 
 
 def _kills(process: int, number: int) -> bool:

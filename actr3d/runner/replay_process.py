@@ -21,7 +21,7 @@ from typing import Any, NoReturn, TypeVar
 
 from actr3d.errors import Actr3dError, UntrustedError
 from actr3d.recording import Recorded
-from actr3d.runner.before_exit import signal_name
+from actr3d.runner.before_exit import how_it_ended
 from actr3d.runner.replayable import check_replayable
 from actr3d.runner.traceback_report import traceback_report
 
@@ -77,7 +77,7 @@ def replay_in_process(file: str, *, trust: bool, any_version: bool) -> ReplayRes
         try:
             return ReplayResult(**json.loads(to.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):
-            return ReplayResult(code=UNKNOWN, text=f"error: no verdict: {_ended(status)}\n")
+            return ReplayResult(code=UNKNOWN, text=f"error: no verdict: the model's process {how_it_ended(status)}\n")
 
 
 def write_result(*, file: str, to: str, trust: bool, any_version: bool) -> None:
@@ -113,13 +113,6 @@ def _answered(file: str, work: Callable[[], T]) -> T | ReplayResult:
     except Exception as error:  # noqa: BLE001 - a file that anybody may have made is never answered by a traceback
         text = f"error: '{file}' cannot be run again: {type(error).__name__}: {error}\n"
     return ReplayResult(code=UNKNOWN, text=text)
-
-
-def _ended(status: int) -> str:
-    """Says how a process ended that has given no verdict."""
-    if status >= 0:
-        return f"the model's process ended with exit code {status}"
-    return f"the model's process was ended by {signal_name(-status)}"
 
 
 @contextmanager

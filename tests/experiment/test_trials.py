@@ -104,10 +104,12 @@ def test_a_trial_that_hangs_is_ended_at_its_limit_and_the_rest_goes_on(tmp_path:
     assert "longer than its limit of 1 s" in next(row["error"] for row in rows if row["mode"] == "hang")
 
 
-def test_a_trial_that_ends_its_own_process_is_a_row(tmp_path: Path) -> None:
-    rows = rows_of(write_experiment(tmp_path, factors='{"mode": ["die", "count"]}', participants=1, trials=1))
+@pytest.mark.parametrize(("number", "name"), [(11, "SIGSEGV"), (35, "signal 35")])
+def test_a_trial_that_ends_its_own_process_is_a_row(tmp_path: Path, number: int, name: str) -> None:
+    model = COUNTER.replace("os.getpid(), 11", f"os.getpid(), {number}")
+    rows = rows_of(write_experiment(tmp_path, model=model, factors='{"mode": ["die", "count"]}', participants=1, trials=1))
     (dead,) = (row for row in rows if row["mode"] == "die")
-    assert (dead["end"], dead["error"]) == ("crash", "the trial ended its own process by the signal SIGSEGV")
+    assert (dead["end"], dead["error"]) == ("crash", f"the process of the trial was ended by {name}")
     assert [row["end"] for row in rows if row["mode"] == "count"] == ["end"]
 
 
@@ -684,6 +686,8 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
     assert not Path("x.rec").exists()
     assert main(["experiment", "--trial", "3", "--record", str(tmp_path / "b.rec")]) == 2
     assert "which experiment? name a design, a file or the folder" in capsys.readouterr().err
+    assert main(["experiment", "--workers", "3"]) == 2
+    assert "which experiment? name a design, a file or the folder of an experiment; leave out --workers" in capsys.readouterr().err
 
 
 def test_nothing_of_a_trial_stays_alive() -> None:
@@ -729,7 +733,7 @@ def test_a_trial_that_ends_itself_is_noticed_although_a_child_of_it_lives(tmp_pa
     model = f"{COUNTER}import os, subprocess, sys\n{child}\nos._exit(3)\n"
     path = write_experiment(tmp_path, model=model, factors='{"n": [1]}', participants=1, trials=1, limit=30)
     (row,) = rows_of(path)
-    assert (row["end"], row["error"]) == ("crash", "the trial ended its own process with exit code 3")
+    assert (row["end"], row["error"]) == ("crash", "the process of the trial ended with exit code 3")
 
 
 def test_a_trial_whose_values_cannot_be_derived_is_a_failure(tmp_path: Path) -> None:
@@ -797,18 +801,18 @@ def test_an_experiment_is_made_on_the_disk_also_where_a_command_was_ended_meanwh
         pass
 
     def note(descriptor: int) -> None:
-        synced.append((Path(f"/proc/self/fd/{descriptor}").readlink().name.partition(".json.")[0], (folder / "experiment.json").exists()))
+        synced.append((Path(f"/proc/self/fd/{descriptor}").readlink().suffix, (folder / "experiment.json").exists()))
 
     with monkeypatch.context() as during:
         during.setattr(Path, "unlink", keep)
         during.setattr(os, "link", end_before_the_link)
         with pytest.raises(KeyboardInterrupt):
             Store.create(folder, specification)
-    assert [path.name.startswith("experiment.json.") for path in folder.iterdir()] == [True]
+    assert [path.suffix for path in folder.iterdir()] == [".tmp"]
     monkeypatch.setattr(os, "fsync", note)
     with Store.create(folder, specification) as store:
         assert store.specification == specification
-    assert synced == [("experiment", False), ("out", True)]
+    assert synced == [(".tmp", False), ("", True)]
     with pytest.raises(ExperimentError, match="holds an experiment already"):
         Store.create(folder, specification)
     (other := tmp_path / "other").mkdir()

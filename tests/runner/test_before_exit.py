@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 
 import pytest
 
 from actr3d.recording import Recorded
-from actr3d.runner.before_exit import before_the_end
+from actr3d.runner.before_exit import before_the_end, how_it_ended
 from tests.helpers.commands import run_command
 
 BUILT = """
@@ -68,6 +69,18 @@ def test_the_run_is_also_kept_if_the_arguments_are_named(monkeypatch: pytest.Mon
         os._exit(status=3)
         os.execve(path=sys.executable, argv=["python"], env={})
     assert kept == [True, True]
+
+
+def test_what_came_before_a_signal_without_a_name_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    def do_nothing(*_: object) -> None:
+        pass
+
+    monkeypatch.setattr(os, "kill", do_nothing)
+    kept: list[bool] = []
+    with before_the_end(kept.append):
+        os.kill(os.getpid(), signal.SIGRTMIN + 1)
+    assert kept == [True]
+    assert how_it_ended(-signal.SIGRTMIN - 1) == f"was ended by signal {signal.SIGRTMIN + 1}"
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 
 from actr3d.actr.loading import load_text
 from actr3d.cli import main
-from actr3d.errors import SettingError
+from actr3d.errors import ConfigurationError, SettingError
 from actr3d.parameter_schema import parameters_of
 from actr3d.runner.cli_options import options_help, read_options, read_settings
 from tests.helpers.recording_forgery import forge
@@ -71,6 +71,8 @@ def test_fields_are_read_as_they_are_written(lamp: Any) -> None:
         ("--name", "text", "lamp"),
         ("--place", "tuple [m]", (0.0, 0.0)),
     ]
+    with pytest.raises(ConfigurationError, match=r"power: must be a number \(got 1000"):
+        fields[0].check(10**400)
     assert fields[0].help == "How bright it is at full power [W]."
     assert fields[2].help == ""
 
