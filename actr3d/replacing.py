@@ -1,13 +1,18 @@
-"""Writes a file whole: a reader finds either the earlier one or the new one, even if the writer is killed or another one writes it, too."""
+"""Writes files whole: a reader finds all of a file or nothing of it, even if the writer is killed or another one writes it, too."""
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import os
+import re
 import secrets
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.tmp")
+"""The names of files that are not finished; a killed process leaves them."""
 
 
 @contextmanager
@@ -20,16 +25,47 @@ def replacing(target: Path) -> Generator[Path]:
     Raises:
         OSError: If the file cannot be written.
     """
-    part = target.with_name(f".{secrets.token_hex(8)}.tmp")
-    try:
+    with _unfinished(target) as part:
         yield part
-        with part.open("rb") as file:
-            os.fsync(file.fileno())
+        _sync(part)
         if target.exists():
             part.chmod(target.stat().st_mode)
         part.replace(target)
+
+
+@contextmanager
+def creating(target: Path) -> Generator[Path]:
+    """Yields the path of a new file, which gets its name at the end of the block; after an error, or if the name is taken, nothing changes.
+
+    Args:
+        target: The file, which must not exist.
+
+    Raises:
+        FileExistsError: If it exists, also if another process has made it meanwhile.
+        OSError: If the file cannot be written.
+    """
+    if target.exists():
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target))
+    with _unfinished(target) as part:
+        yield part
+        _sync(part)
+        os.link(part, target)  # unlike a rename, this never replaces a file
+
+
+@contextmanager
+def _unfinished(target: Path) -> Generator[Path]:
+    """Yields the path for an unfinished file beside a file, and deletes it at the end of the block."""
+    part = target.with_name(f".{secrets.token_hex(8)}.tmp")
+    try:
+        yield part
     finally:
         part.unlink(missing_ok=True)
+
+
+def _sync(file: Path) -> None:
+    """Waits until the contents of a file are on the disk."""
+    with file.open("rb") as opened:
+        os.fsync(opened.fileno())
 
 
 def replace_file(target: Path, data: bytes) -> None:
@@ -44,7 +80,7 @@ def replace_file(target: Path, data: bytes) -> None:
 
 @contextmanager
 def locked(target: Path) -> Generator[None]:
-    """Lets no other process that calls this change a file during the block, unless the file system has no locks.
+    """Locks a file against other processes that call this, inside the block, unless the file system has no locks.
 
     Args:
         target: The file; it need not exist. The lock is a file beside it, which stays.

@@ -6,7 +6,6 @@ import fcntl
 import json
 import os
 import re
-import secrets
 import sqlite3
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, suppress
@@ -18,15 +17,15 @@ from typing import Any, Self, cast
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Specification
 from actr3d.experiment.trial import Row
-from actr3d.replacing import replace_file
+from actr3d.replacing import UNFINISHED, creating, replace_file
 from actr3d.values import to_json
 
 SPECIFICATION, FACTS, TRIALS, LOCK = "experiment.json", "facts.json", "trials.sqlite", "lock"
 """The names of the files in the folder."""
-UNFINISHED = re.compile(rf"{re.escape(SPECIFICATION)}\.[0-9a-f]{{8}}")
-"""The names of unfinished files: those of a command that was ended while it created the folder."""
-CHUNK = 5_000
-"""Rows that are read at a time."""
+FRAME = ('  File "', "Traceback (most recent call last):")
+"""How the lines of a traceback begin that come before its error."""
+ROWS_AT_ONCE = 5_000
+"""The number of rows that are read at a time."""
 COLUMN_TYPES = ("null", "boolean", "integer", "real", "text")
 """The types of columns. A column with values of several types has the last of their types in this list, but `text` if some of the values
 are True or False and others are not."""
@@ -162,15 +161,8 @@ class Store:
             if not all(UNFINISHED.fullmatch(file.name) for file in path.iterdir()):
                 what = "holds an experiment already; continue it with --resume" if (path / SPECIFICATION).exists() else "is not empty"
                 raise ExperimentError(f"--out: '{path}' {what}, or name a new folder")
-            part = path / f"{SPECIFICATION}.{secrets.token_hex(4)}"
-            try:
-                with part.open("w", encoding="utf-8") as file:
-                    file.write(text)
-                    file.flush()
-                    os.fsync(file.fileno())
-                os.link(part, path / SPECIFICATION)  # fails if another command has been faster
-            finally:
-                part.unlink(missing_ok=True)
+            with creating(path / SPECIFICATION) as part:
+                part.write_text(text, encoding="utf-8")
             _sync(path)
         except FileExistsError:
             raise ExperimentError(f"--out: '{path}' holds an experiment already; continue it with --resume, or name a new folder") from None
@@ -291,36 +283,42 @@ class Store:
             after: Only trials with a greater number than this.
         """
         names = [column.name for column in self.columns[: -len(LAST)]]
-        while found := self._read("WHERE number > ? ORDER BY number LIMIT ?", (after, CHUNK)):
-            for number, data, versions, wall_s, worker in found:
-                row = self._row(number, data)
-                yield {**{name: row.get(name) for name in names}, "versions": versions, "wall_s": wall_s, "worker": worker}
+        while found := self._read("number > ? ORDER BY number LIMIT ?", (after, ROWS_AT_ONCE)):
+            yield from (self._row(one, names) for one in found)
             after = found[-1][0]
 
     def row(self, number: int) -> Row | None:
         """Returns the row of a trial; None if it has not finished."""
-        return next((row for row in self.rows(number - 1) if row["trial"] == number), None)
+        names = [column.name for column in self.columns[: -len(LAST)]]
+        return next((self._row(one, names) for one in self._read("number = ?", (number,))), None)
 
     def _read(self, where: str, values: Sequence[Any]) -> list[Any]:
+        columns = ", ".join(("number", "data", *(column.name for column in LAST)))
         try:
-            with closing(self._database.execute(f"SELECT number, data, versions, wall_s, worker FROM trial {where}", values)) as cursor:
+            with closing(self._database.execute(f"SELECT {columns} FROM trial WHERE {where}", values)) as cursor:
                 return cursor.fetchall()
         except sqlite3.Error as error:
             raise ExperimentError(f"{self.folder / TRIALS}: is damaged ({error})") from None
 
-    def _row(self, number: Any, data: Any) -> Row:
-        """Returns a row.
+    def _row(self, found: Sequence[Any], names: Sequence[str]) -> Row:
+        """Returns a row of the table of trials.
+
+        Args:
+            found: The trial's number, its row as JSON, and the columns `LAST`.
+            names: The names of the columns before `LAST`.
 
         Raises:
             ExperimentError: If it is no JSON object.
         """
+        number, data, *others = found
         try:
             row = json.loads(data)
         except (ValueError, TypeError, RecursionError):
             row = None
         if not isinstance(row, dict):
             raise ExperimentError(f"{self.folder / TRIALS}: is damaged (the row of trial {number!r} is no JSON object)")
-        return cast("Row", row)
+        known = cast("Row", row)
+        return {**{name: known.get(name) for name in names}, **dict(zip((column.name for column in LAST), others, strict=True))}
 
 
 @contextmanager
@@ -416,6 +414,7 @@ def _why(error: Exception) -> str:
 
 
 def summary(error: str) -> str:
-    """Returns the line of a trial's traceback that names the error; notes may follow it."""
+    """Returns the line of a trial's traceback that names the error; more lines of its message, and notes, may follow it."""
     lines = error.strip().splitlines()
-    return next((line for line in reversed(lines) if re.match(r"[\w.]+: ", line)), lines[-1])
+    frames = [number for number, line in enumerate(lines) if line.startswith(FRAME)]
+    return next((line for line in lines[frames[-1] + 1 if frames else 0 :] if line and not line[0].isspace()), lines[-1])

@@ -21,6 +21,7 @@ from actr3d.recording.checksums import Checksums
 from actr3d.recording.key import make_key, seal
 from actr3d.recording.opening import COMPANIONS
 from actr3d.recording.schema import COLUMNS, LEFT, SCHEMA
+from actr3d.replacing import creating
 from actr3d.trace import TraceEvent
 from actr3d.values import escape_surrogates, plain_to_json
 
@@ -157,17 +158,13 @@ class Writer:
         with self._writing:
             if self.failure is not None:
                 raise self.failure
-            part = path.with_name(f".{path.name}.part")  # an unfinished copy never has the final name
             try:
-                if path.exists():
-                    raise FileExistsError
-                part.unlink(missing_ok=True)
-                self._file.execute("VACUUM INTO ?", (str(part.absolute()),))
-                with closing(sqlite3.connect(part.absolute())) as copy, copy:
-                    self._add_facts(copy, facts)
-                part.rename(path)
+                with creating(path) as part:
+                    self._file.execute("VACUUM INTO ?", (str(part.absolute()),))
+                    with closing(sqlite3.connect(part.absolute())) as copy, copy:
+                        copy.execute("PRAGMA journal_mode=MEMORY")  # no other file beside an unfinished one
+                        self._add_facts(copy, facts)
             except (sqlite3.Error, OSError, ValueError, MemoryError) as error:
-                _remove(part)
                 raise _unwritable(path, _reason(error)) from None
 
     def close(self) -> None:

@@ -454,6 +454,26 @@ def test_a_copy_that_cannot_be_written_leaves_nothing_and_the_recording_continue
         assert recorded.ticks == 20
 
 
+def test_a_copy_never_replaces_a_file_that_is_made_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    simulation, link = driving(), os.link
+
+    def make_the_file_first(part: Path, target: Path) -> None:
+        target.write_text("precious", encoding="utf-8")
+        link(part, target)
+
+    with simulation.record(tmp_path / "run") as recording:
+        simulation.run(0.1)
+        monkeypatch.setattr(os, "link", make_the_file_first)
+        with pytest.raises(RecordingError, match="copy': it exists already"):
+            recording.copy_to(tmp_path / "copy")
+        monkeypatch.undo()
+        recording.copy_to(tmp_path / "other")
+    assert (tmp_path / "copy").read_text(encoding="utf-8") == "precious"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["copy", "other", "run"]
+    with Recorded(tmp_path / "other") as recorded:
+        assert recorded.ticks == 10
+
+
 def test_each_second_of_simulated_time_is_written_however_fast_the_run_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writer, "INTERVAL", 1_000)  # nothing is written for the time on the wall
     simulation = driving()
