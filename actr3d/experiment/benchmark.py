@@ -7,7 +7,6 @@ milliseconds long.
 
 from __future__ import annotations
 
-import os
 import tempfile
 import threading
 import time
@@ -20,6 +19,7 @@ from typing import Any
 from unittest.mock import patch
 
 import mujoco
+from dask.system import CPU_COUNT
 
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.benchmark import Figure, benchmark, processor_time_of
@@ -75,7 +75,7 @@ def _aperture(folder: Path) -> list[Figure]:
                 record_trial(plain.experiment, trial, folder / f"{next(count)}.rec", plain.helpers)
 
     costs = [_cost(work) for work in (plain.run, recorded)]
-    minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / (os.cpu_count() or 1) / 60
+    minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / CPU_COUNT / 60
     predictive = _Trials("predictive")
     return [
         Figure(name="a trial", value=costs[0], sense="at most", limit=3, what="processor time of a trial / of mj_step in it"),

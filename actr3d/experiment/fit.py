@@ -10,8 +10,6 @@ The emulator also gives the intervals of the parameters and the estimates of par
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 import json
 import math
@@ -36,7 +34,7 @@ from actr3d.errors import ConfigurationError, DesignError, ExperimentError, Sett
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.emulator import STEPS, Emulator
-from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
+from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels, plain_text
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r
 from actr3d.experiment.specification import Experiment, specify
@@ -587,16 +585,14 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     names = {factor_name(name): name for name in (*design.factors, *(one.over for one in design.kept if one.over is not None))}
     levels: Any = {shown: plain_levels(design.factors.get(name, ())) for shown, name in names.items()}
     texts = {(shown, plain_text(level)): _in_cell(level) for shown, name in names.items() for level in design.factors.get(name, ())}
-    lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
-    head = [cell.strip() for cell in lines[0]] if lines else []
+    file = HumanFile(path)
     trial_has = measures_of(experiment)
     for_report = {*columns_of_people([*trial_has, *design.known_columns])} - {*trial_has, measure}
     ignored = {*OWN_COLUMNS, *design.known_columns, *for_report} - {"participant", "group", *names.values()}
-    if "measure" in head:
-        place = head.index("measure")
-        measures = [row[place].strip() for row in lines[1:] if len(row) > place]
+    if "measure" in file.columns:
+        measures = file.cells("measure")
     else:
-        there = [column for column in head if factor_name(column) not in {"participant", "group", *levels, *ignored}]
+        there = [column for column in file.columns if factor_name(column) not in {"participant", "group", *levels, *ignored}]
         kept = {one.name for one in design.kept}
         # Any other column is an error of the reader. A design that keeps all measures does not say which there are.
         measures = [column for column in there if column == measure or (column in kept if kept else not did_you_mean(column, levels))]
@@ -615,7 +611,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         parameters=parameters,
         ignored=sorted(ignored),
     )
-    data = read_human_data(path, schema)
+    data = file.read(schema)
     people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for number, row in enumerate(data.rows):
         given = [(column, row[column]) for column in ("group", *levels) if row.get(column) is not None]

@@ -80,10 +80,18 @@ def absent_levels(written: Sequence[Any], levels: Sequence[Any]) -> list[str]:
 
 
 def plain_text(value: Any) -> str:
-    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
-    if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
-        return value if isinstance(value, str) and value else "none"
-    return json.dumps(value) if isinstance(value, (list, tuple, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
+    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`; a whole number is written without a point."""
+    match value:
+        case None | "":
+            return "none"
+        case float() if math.isnan(value):
+            return "none"
+        case float():
+            return text if float(text := f"{value:g}") == value else repr(value)
+        case list() | tuple() | dict():
+            return json.dumps(value)
+        case _:
+            return str(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,21 +142,7 @@ def library_human_data() -> dict[str, Path]:
     return {path.stem: path for path in sorted(FOLDER.glob("*.csv"))}
 
 
-def read_human_data(path: Path | str, schema: Schema) -> HumanData:
-    """Reads and checks a file of human data.
-
-    Args:
-        path: The file.
-        schema: What its columns may hold.
-
-    Raises:
-        ExperimentError: If the file cannot be read, or does not follow the schema: each error names file, line and column, what was
-            given and what would be right.
-    """
-    return _Reader(str(path), read_human_text(path), schema).read(Path(path).name)
-
-
-def read_human_text(path: Path | str) -> str:
+def _text(path: Path | str) -> str:
     """Returns the text of a file of human data.
 
     Raises:
@@ -167,15 +161,23 @@ def read_human_text(path: Path | str) -> str:
     raise ExperimentError(f"{path}: cannot be read as human data ({why})")
 
 
-class _Reader:
-    """Reads one file, and collects its errors."""
+class HumanFile:
+    """A file of human data, and its errors.
 
-    def __init__(self, path: str, text: str, schema: Schema) -> None:
-        self._path, self._schema = path, schema
+    Args:
+        path: The file.
+
+    Raises:
+        ExperimentError: If it cannot be read, or is not CSV.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self._path = str(path)
+        self._schema = Schema(groups=(), factors={}, measures=())
         self._errors: list[str] = []
         self._notes: list[str] = []
         self._lines: list[tuple[int, list[str]]] = []
-        reader = csv.reader(io.StringIO(text))
+        reader = csv.reader(io.StringIO(_text(path)))
         try:
             for cells in reader:
                 if cells and cells[0].lstrip().startswith("#"):
@@ -190,12 +192,27 @@ class _Reader:
         except csv.Error as error:
             raise ExperimentError(f"{path}:{reader.line_num}: is not CSV ({error})") from None
 
-    def read(self, name: str) -> HumanData:
+    @property
+    def columns(self) -> Sequence[str]:
+        """The names of the columns; none if the file is empty."""
+        return self._lines[0][1] if self._lines else ()
+
+    def cells(self, column: str) -> list[str]:
+        """Returns the cells of a column that is there; those of lines that are too short are left out."""
+        place = self.columns.index(column)
+        return [cells[place] for _, cells in self._lines[1:] if len(cells) > place]
+
+    def read(self, schema: Schema) -> HumanData:
         """Returns the data.
 
+        Args:
+            schema: What its columns may hold.
+
         Raises:
-            ExperimentError: If there are errors; names up to `SHOWN` of them.
+            ExperimentError: If the file does not follow the schema. Names up to `SHOWN` errors; each names file, line and column, what was
+                given and what would be right.
         """
+        self._schema = schema
         if not self._lines:
             raise ExperimentError(f"{self._path}: is empty; the first line must name the columns")
         line, head = self._lines[0]
@@ -224,7 +241,9 @@ class _Reader:
         if unused := [name for name in head if name in self._schema.ignored]:
             self._notes.append(f"Columns that are not used: {', '.join(unused)}.")
         numbers = [name for name in self._schema.numbers if name in head and not published]
-        return HumanData(name=name, published=published, rows=list(rows.values()), measures=measures, numbers=numbers, notes=self._notes)
+        return HumanData(
+            name=Path(self._path).name, published=published, rows=list(rows.values()), measures=measures, numbers=numbers, notes=self._notes
+        )
 
     def _absent_in(self, row: Mapping[str, Any]) -> str:
         """Returns a factor with its level in a row that the experiment does not have; "" for none."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from itertools import islice
@@ -13,7 +12,8 @@ from typing import Any, cast
 import numpy as np
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.store import CHUNK, Column, Store
+from actr3d.experiment.human_data import plain_text
+from actr3d.experiment.store import ROWS_AT_ONCE, Column, Store
 from actr3d.replacing import replacing
 
 CSV, PARQUET, COLUMNS = "trials.csv", "trials.parquet", "columns.csv"
@@ -53,11 +53,15 @@ def _write_columns(path: Path, columns: tuple[Column, ...]) -> None:
 
 
 def _write_csv(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[str, Any]]) -> None:
-    names = [column.name for column in columns]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(names)
-        writer.writerows([row.get(name) for name in names] for row in rows)
+        writer.writerow([column.name for column in columns])
+        writer.writerows([_cell(row.get(column.name), column.type) for column in columns] for row in rows)
+
+
+def _cell(value: Any, kind: str) -> Any:
+    """Returns a value as it is in a table: in a column of texts, every value is one."""
+    return value if kind != "text" or value is None or isinstance(value, str) else plain_text(value)
 
 
 def _write_parquet(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[str, Any]]) -> None:
@@ -68,8 +72,8 @@ def _write_parquet(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[
     ]
     schema = arrow.schema(fields)
     with parquet.ParquetWriter(path, schema) as writer:
-        while chunk := list(islice(rows, CHUNK)):
-            arrays = [_array(arrow, types[column.type], column.type, [row.get(column.name) for row in chunk]) for column in columns]
+        while found := list(islice(rows, ROWS_AT_ONCE)):
+            arrays = [_array(arrow, types[column.type], column.type, [row.get(column.name) for row in found]) for column in columns]
             writer.write_table(arrow.Table.from_arrays(arrays, schema=schema))
 
 
@@ -79,7 +83,7 @@ def _array(arrow: Any, arrow_type: Any, kind: str, values: list[Any]) -> Any:
         return arrow.nulls(len(values))
     if kind == "text":
         texts = arrow.lib.StringBuilder()
-        texts.append_values([value if value is None or isinstance(value, str) else json.dumps(value) for value in values])
+        texts.append_values([_cell(value, kind) for value in values])
         return texts.finish()
     there = np.packbits(np.array([value is not None for value in values], bool), bitorder="little")
     plain = [0 if value is None else value for value in values]

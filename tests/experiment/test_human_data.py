@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.human_data import SHOWN, Schema, library_human_data, read_human_data
+from actr3d.experiment.fit import load_target
+from actr3d.experiment.human_data import SHOWN, HumanFile, Schema, library_human_data
 from actr3d.experiment.specification import library_designs, specify
 from actr3d.parameter_schema import Parameter
 
@@ -25,7 +26,7 @@ SCHEMA = Schema(
 def read(folder: Path, text: str, schema: Schema = SCHEMA):
     path = folder / "people.csv"
     path.write_text(text, encoding="utf-8")
-    return read_human_data(path, schema)
+    return HumanFile(path).read(schema)
 
 
 def test_trials_are_read(tmp_path: Path) -> None:
@@ -147,11 +148,14 @@ def test_all_errors_are_named_at_once_but_not_without_end(tmp_path: Path) -> Non
 def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "people.csv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ExperimentError, match="it is not UTF-8"):
-        read_human_data(tmp_path / "people.csv", SCHEMA)
+        HumanFile(tmp_path / "people.csv").read(SCHEMA)
     with pytest.raises(ExperimentError, match=r"/dev/zero: cannot be read as human data \(it has more than 268,435,456 bytes\)"):
-        read_human_data("/dev/zero", SCHEMA)
+        HumanFile("/dev/zero").read(SCHEMA)
+    (tmp_path / "people.csv").write_text(f'participant\n"{"x" * 200_000}', encoding="utf-8")
+    with pytest.raises(ExperimentError, match=r"people\.csv:2: is not CSV \(field larger than field limit"):
+        load_target(str(tmp_path / "people.csv"), specify("fan_effect"))
     with pytest.raises(ExperimentError, match="No such file"):
-        read_human_data(tmp_path / "nobody.csv", SCHEMA)
+        HumanFile(tmp_path / "nobody.csv").read(SCHEMA)
 
 
 def test_the_librarys_designs_name_data_that_follow_the_schema() -> None:
@@ -163,6 +167,6 @@ def test_the_librarys_designs_name_data_that_follow_the_schema() -> None:
             assert design.human in known
     design = specify("warren_whang_1987").design
     factors = {name: [*levels] for name, levels in design.factors.items()}
-    data = read_human_data(known["warren_whang_1987"], Schema(groups=[*design.groups], factors=factors, measures=["speed_m_s"]))
+    data = HumanFile(known["warren_whang_1987"]).read(Schema(groups=[*design.groups], factors=factors, measures=["speed_m_s"]))
     assert [row["mean"] for row in data.rows] == [1.29, 1.61, 1.28, 1.77]
     assert "not found as numbers" in data.notes[0]

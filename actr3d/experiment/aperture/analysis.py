@@ -140,12 +140,13 @@ def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> lis
     judged: list[list[tuple[float, bool]]] = []
     found: list[dict[str, Any]] = []
     for (group, participant), of in rows.groupby(["group", "participant"], sort=False, observed=True):
-        judged.append(list(zip(of["ratio"].tolist(), (of["passable"] < 0.5).tolist(), strict=True)))
+        answered = of[of["passable"].notna()]
+        judged.append(list(zip(answered["ratio"].tolist(), (answered["passable"] < 0.5).tolist(), strict=True)))
         one = critical_ratio(judged[-1])
         values = (math.nan,) * 3 if one is None else (one.value, one.low, one.high)
         found.append({"group": group, "participant": participant, **dict(zip(("boundary", "low", "high"), values, strict=True))})
         found[-1]["beyond"] = "yes" if one is not None and one.beyond else "no"
-    people = pd.DataFrame(found)
+    people, constraints = pd.DataFrame(found), Findings([]).all(judged=[answers for answers in judged if answers])
     means = cell_means(rows, "passable", ["group", "ratio"])
     curves: list[Curve] = []
     for group in results.groups:
@@ -176,7 +177,10 @@ def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> lis
         "active memory."
     )
     return [
-        Section(title="Constraints on a model of people", parts=[_constraints(Findings([]).all(judged=judged))]),
+        Section(
+            title="Constraints on a model of people",
+            parts=[_constraints(constraints)],
+        ),
         Section(title="Judged passability", parts=parts),
     ]
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtr
 
-from actr3d.experiment.aperture.critical_ratio import CriticalRatio, Trials, critical_ratio_of_group, t_interval
+from actr3d.experiment.aperture.critical_ratio import Answer, CriticalRatio, critical_ratio_of_group, t_interval
 from actr3d.experiment.aperture.passing import DEPTH, TURNED, Passing
 from actr3d.experiment.report.libraries import noting_warnings, pingouin
 from actr3d.experiment.report.page import number
@@ -44,7 +44,7 @@ STEADY = 1.0
 STRAIGHT = 3.0
 """The maximum mean angle at wide apertures [degrees]: people sway by a few degrees. Source: chosen for this library."""
 WIDE = 1.35
-"""Apertures from this ratio on are wide."""
+"""Apertures above this ratio are wide."""
 EQUAL = 0.63
 """Below this aperture the large group turns more [m]. Source: 1.30 times the large group's shoulders (docs/human-data.md)."""
 BARS = 8
@@ -168,7 +168,7 @@ class Findings:
 
     # -- the constraints
 
-    def all(self, *, judged: Sequence[Trials] | None = None) -> list[Constraint]:
+    def all(self, *, judged: Sequence[Sequence[Answer]] | None = None) -> list[Constraint]:
         """Returns all nine constraints.
 
         Args:
@@ -398,7 +398,7 @@ class Findings:
             text += "; none: no walker set out, although people pass"
         return Constraint(number=BARS, says=says, met=met, found=text)
 
-    def judged(self, participants: Sequence[Trials] | None) -> Constraint:
+    def judged(self, participants: Sequence[Sequence[Answer]] | None) -> Constraint:
         """9: the boundary of what is judged to be passable: its whole interval is inside the bounds, outside, or neither."""
         says = "«can pass» from about 1.16, below 1.30"
         if participants is None:

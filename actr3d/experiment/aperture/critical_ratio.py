@@ -36,11 +36,11 @@ class CriticalRatio:
     value is only a bound."""
 
 
-Trials = Iterable[tuple[float, bool]]
-"""The ratio of each trial, and whether the walker turned, or judged that it cannot pass without turning."""
+Answer = tuple[float, bool]
+"""The ratio of a trial, and whether the walker turned, or judged that it cannot pass without turning."""
 
 
-def critical_ratio(trials: Trials) -> CriticalRatio | None:
+def critical_ratio(trials: Iterable[Answer]) -> CriticalRatio | None:
     """Returns the ratio at which half of the trials are turned, by a logistic fit; None if all are, or none is.
 
     The interval is that of the profile likelihood. If all trials up to one ratio are turned, and none from the next ratio on, the critical
@@ -78,14 +78,14 @@ def critical_ratio(trials: Trials) -> CriticalRatio | None:
     return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high, beyond=bool(likely[0] or likely[-1]))
 
 
-def critical_ratio_of_group(participants: Sequence[Trials]) -> CriticalRatio | None:
+def critical_ratio_of_group(participants: Sequence[Sequence[Answer]]) -> CriticalRatio | None:
     """Returns the ratio at which half of all trials of some participants are turned, with an interval for other such people.
 
     Trials of one person are more alike than those of several. So the interval is that of all trials or, where this is wider, that of the
     jackknife: of how much the ratio changes without each of the participants (Student's t).
 
     Args:
-        people: The trials of each participant, as for `critical_ratio`.
+        participants: The trials of each participant, as for `critical_ratio`.
     """
     found = critical_ratio(trial for one in participants for trial in one)
     if found is None or found.beyond or len(participants) < 2:

@@ -16,9 +16,9 @@ def aperture_of(values: Mapping[str, Any]) -> dict[str, float]:
 
 
 def judgement(simulation: Any) -> dict[str, Any]:
-    """Returns what the walker judged, and when [s]."""
+    """Returns what the walker judged, and when [s]; None for what it has not judged by the end."""
     judged = simulation.agents["walker"].judged
-    return {"judged": judged, "passable": judged == "as it is", "time_s": simulation.time}
+    return {"judged": judged, "passable": None if judged is None else judged == "as it is", "time_s": simulation.time}
 
 
 @design
@@ -36,7 +36,7 @@ def passability_judgement() -> Design:
         results=judgement,
         measures=[
             Measured(name="judged", meaning="How the walker judged that it can pass: «as it is» (not turned), «turned», or «not at all»."),
-            Measured(name="passable", meaning="Whether it judged that it can pass without turning."),
+            Measured(name="passable", meaning="Whether it judged that it can pass without turning; empty if it did not judge."),
             Measured(name="time_s", unit="s", meaning="The simulated time of the judgement."),
         ],
         trials=10,

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from actr3d.experiment.design import Design
-from actr3d.experiment.human_data import HumanData, Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
+from actr3d.experiment.human_data import HumanData, HumanFile, Schema, factor_name, library_human_data, plain_levels, plain_text
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas
@@ -76,7 +76,7 @@ def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | N
         ExperimentError: If the file does not follow the schema.
     """
     if file is not None:
-        data = read_human_data(file, schema_of(parts))
+        data = HumanFile(file).read(schema_of(parts))
         return (data, "") if data.rows or data.published else (None, f"{data.name}: {' '.join(data.notes)}")
     name, known = design.human, library_human_data()
     if name is None:
@@ -85,7 +85,7 @@ def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | N
         return None, f"The design names the human data '{name}', which the library does not have, and none were given with --human."
     if not set(schema_of(parts).measures) & _measures_in(known[name]):
         return None, f"The published means '{name}' are of other measures than this experiment has."
-    return read_human_data(known[name], schema_of(parts)), ""
+    return HumanFile(known[name]).read(schema_of(parts)), ""
 
 
 def _measures_in(path: Path) -> set[str]:

@@ -14,7 +14,7 @@ from actr3d.experiment.design import OWN_COLUMNS, Design
 from actr3d.experiment.human_data import absent_levels, factor_name, plain_levels, plain_text
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
-from actr3d.experiment.store import CHUNK, UNITS, Column, Store, summary
+from actr3d.experiment.store import ROWS_AT_ONCE, UNITS, Column, Store, summary
 from actr3d.parameter_schema import Parameter
 
 NUMBERS = ("boolean", "integer", "real")
@@ -186,8 +186,8 @@ def _frame(store: Store, texts: Sequence[str]) -> Any:
     pd, rows = pandas(), store.rows()
     kinds = {column.name: "float64" if column.type in NUMBERS and column.name not in texts else "object" for column in store.columns}
     pieces: list[Any] = []
-    while chunk := list(islice(rows, CHUNK)):  # in pieces, which need less memory than all rows as dictionaries
-        piece = pd.DataFrame.from_records(chunk, exclude=[name for name in LEFT_OUT if name in chunk[0]])
+    while found := list(islice(rows, ROWS_AT_ONCE)):  # in pieces, which need less memory than all rows as dictionaries
+        piece = pd.DataFrame.from_records(found, exclude=[name for name in LEFT_OUT if name in found[0]])
         piece = piece.astype({name: kinds[name] for name in piece})
         for name in texts:
             piece[name] = pd.Series([plain_text(value) for value in piece[name]], dtype="object")

@@ -19,9 +19,19 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment.aperture.analysis import Rotation, at_own_ratios, frame_of, passing_apertures, passings_of, with_greatest_angles
+from actr3d.experiment.aperture.analysis import (
+    Rotation,
+    at_own_ratios,
+    frame_of,
+    judging_apertures,
+    passing_apertures,
+    passings_of,
+    with_greatest_angles,
+)
 from actr3d.experiment.aperture.constraints import Findings
+from actr3d.experiment.design import Trial
 from actr3d.experiment.fit import load_target
+from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
@@ -646,6 +656,37 @@ def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
     assert {tuple(one.conditions) for one in target} == {("group", "n", "mode")}
 
 
+@pytest.mark.parametrize("levels", ['[["a", "b"], ["c"]]', '[1.0, "fast"]', "[0.123456789, True, 2]"])
+def test_levels_of_several_types_are_the_same_texts_in_both_tables_and_in_data_of_people(tmp_path: Path, levels: str) -> None:
+    path = write_experiment(tmp_path, model=f"word = None\n{COUNTER}", factors=f'{{"word": {levels}}}', participants=1)
+    folder = store_rows(tmp_path / "out", str(path), lambda trial: {"rt": 0.1 * trial.position, "luck": 0.5})
+    with Store(folder) as store:
+        export(store)
+    with (folder / "trials.csv").open(encoding="utf-8") as file:
+        texts = [row["word"] for row in csv.DictReader(file)]
+    assert pandas().read_parquet(folder / "trials.parquet")["word"].to_list() == texts
+    found = load_target(str(folder / "trials.csv"), specify(str(path)), "rt")
+    levels_of_design = specify(str(path)).design.factors["word"]
+    assert [plain_text(one.conditions["word"]) for one in found] == [plain_text(level) for level in levels_of_design]
+
+
+def test_a_walker_that_has_not_judged_neither_passes_nor_does_not(tmp_path: Path) -> None:
+    def judge(trial: Trial) -> dict[str, Any]:
+        if trial.repetition == 1 or trial.columns["participant"] == "small 1":
+            return {"judged": None, "passable": None, "time_s": 5.0}
+        passable = trial.values["ratio"] > 1.2
+        return {"judged": "as it is" if passable else "turned", "passable": passable, "time_s": 5.0}
+
+    folder = store_rows(tmp_path / "out", "passability_judgement", judge, trials=2, participants=3)
+    sections = judging_apertures(read_results(folder), [])
+    tables = frames([part for section in sections for part in section.parts])
+    boundaries = tables["boundaries"]["boundary"].to_list()
+    assert [math.isnan(one) for one in boundaries] == [True, False, False, False, False, False]
+    assert boundaries[1:] == pytest.approx([1.2] * 5, abs=0.02)
+    (ninth,) = (row for row in tables["constraints"].to_dict("records") if row["number"] == "9")
+    assert "from 1.200 (" in ninth["found"]
+
+
 def test_a_parameter_that_only_a_later_group_has_is_no_measure(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, factors='{"mode": ["count", "shout"]}')
     text = path.read_text(encoding="utf-8").replace(
@@ -669,9 +710,8 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     failed = store_rows(tmp_path / "failed", str(path), lambda _: {"error": "ValueError: never"})
     assert main(["report", str(failed)]) == 1
     assert "all 12 trials failed; the first one with: ValueError: never" in capsys.readouterr().err
-    noted = store_rows(
-        tmp_path / "noted", str(path), lambda _: {"error": "Traceback:\nValueError: never\nthe model had just asked its memory"}
-    )
+    error = "Traceback (most recent call last):\nValueError: never\nhint: the model had asked its memory"
+    noted = store_rows(tmp_path / "noted", str(path), lambda _: {"error": error})
     assert main(["report", str(noted)]) == 1
     assert "the first one with: ValueError: never\n" in capsys.readouterr().err
     assert main(["report", str(tmp_path)]) == 1
