@@ -176,7 +176,7 @@ class _Run:
         self._waiting: dict[Any, list[int]] = {}
         self._suspects: deque[int] = deque()
         self._killed: dict[int, int] = {}
-        self._shown = 0
+        self._shown: Progress | None = None
         self._finished: SimpleQueue[Any] = SimpleQueue()
 
     def all(self, numbers: Iterator[int]) -> None:
@@ -207,10 +207,7 @@ class _Run:
 
         Once all other trials have finished, yields the suspects, one at a time.
         """
-        workers = self._workers()
-        if workers != self._shown:
-            self._report()
-        most = max(1, workers) * AHEAD
+        most = max(1, self._report().workers) * AHEAD
         usual = min(MAX_BATCH, round(BATCH / max(self._seconds, 1e-6)))
         for _ in range(most - len(self._waiting)):
             left = len(self._experiment.design) - self._done - sum(map(len, self._waiting.values()))
@@ -277,10 +274,14 @@ class _Run:
             self._add(Batch(rows=[(number, row, 0.0)], worker=""))
             self._report()
 
-    def _report(self) -> None:
+    def _report(self) -> Progress:
+        """Returns the progress, and shows it if it is not shown yet."""
         total = len(self._experiment.design)
-        self._shown = self._workers()
-        self._show(Progress(done=self._done, total=total, failures=self._failures, workers=self._shown))
+        progress = Progress(done=self._done, total=total, failures=self._failures, workers=self._workers())
+        if progress != self._shown:
+            self._shown = progress
+            self._show(progress)
+        return progress
 
     def _lost(self) -> NoReturn:
         total = len(self._experiment.design)
