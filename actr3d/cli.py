@@ -32,8 +32,7 @@ from actr3d.values import to_json
 
 def event_line(event: TraceEvent) -> str:
     """Returns an event as a human-readable line."""
-    words = " ".join(f"{key}={value}" for key, value in event.data.items())
-    return f"{event.time:10.3f}  {event.source:<20} {event.kind:<10} {words}"
+    return f"{event.time:10.3f}  {event.source:<20} {event.kind:<10} {event.data_text}"
 
 
 def run_command(options: argparse.Namespace) -> int:

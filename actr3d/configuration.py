@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -14,6 +14,7 @@ from actr3d.errors import ConfigurationError, did_you_mean
 from actr3d.weak_cache import weak_cache
 
 
+@dataclass(frozen=True, init=False, repr=False)
 class Live:
     """Marks a field's type: the value can be changed during a run, by the given command.
 
@@ -27,10 +28,13 @@ class Live:
         body: The body that receives the command, if more than one body accepts it.
     """
 
+    word: str
+    before: tuple[str, ...]
+    body: str | None
+
     def __init__(self, word: str, *before: str, body: str | None = None) -> None:
-        self.word = word
-        self.before = before
-        self.body = body
+        for name, value in (("word", word), ("before", before), ("body", body)):
+            object.__setattr__(self, name, value)  # it is frozen
 
     def __repr__(self) -> str:
         return f"Live({', '.join(map(repr, (self.word, *self.before)))}{f', body={self.body!r}' if self.body else ''})"

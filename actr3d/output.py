@@ -6,7 +6,7 @@ import io
 import os
 import sys
 from collections.abc import Callable, Generator, Iterable
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from types import TracebackType
 from typing import Any, Self, TextIO, cast
 
@@ -141,6 +141,11 @@ class TeeOutput:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         self._stack.close()
+
+
+def printing_nothing() -> AbstractContextManager[None]:
+    """Discards what a model prints inside the block."""
+    return printing_to(ModelOutput(lambda _: None))
 
 
 @contextmanager

@@ -34,15 +34,6 @@ _NOT_LITERAL = (ValueError, SyntaxError, TypeError, MemoryError, RecursionError)
 
 
 @dataclass(frozen=True, kw_only=True)
-class LiveCommand:
-    """The command that changes a parameter during a run; see `actr3d.configuration.Live`."""
-
-    word: str
-    before: tuple[str, ...] = ()
-    body: str | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
 class Parameter:
     """One parameter of a model."""
 
@@ -67,7 +58,7 @@ class Parameter:
     """Its docstring, in one line."""
     line: int = 0
     """Its line in the model's text; 0 if it was read from a class."""
-    live: LiveCommand | None = None
+    live: Live | None = None
     """How the parameter is changed during a run; None if a change needs a new run."""
 
     @property
@@ -175,7 +166,7 @@ def _name_of(declared: Any) -> str:
 
 def _with_mark(found: Parameter, mark: object) -> Parameter:
     if isinstance(mark, Live):
-        return replace(found, live=LiveCommand(word=mark.word, before=mark.before, body=mark.body))
+        return replace(found, live=mark)
     name = type(mark).__name__
     is_bound = isinstance(mark, annotated_types.BaseMetadata) and name in _BOUNDS
     return replace(found, **{_BOUNDS[name]: getattr(mark, name.lower())}) if is_bound else found
@@ -289,7 +280,7 @@ def _marked(parameter: Parameter, mark: ast.expr, constants: Mapping[str, Any]) 
     if name in _BOUNDS and [*values, *named.values()]:
         return replace(parameter, **{_BOUNDS[name]: [*values, *named.values()][0]})
     if name == "Live" and values:
-        return replace(parameter, live=LiveCommand(word=values[0], before=tuple(values[1:]), body=named.get("body")))
+        return replace(parameter, live=Live(*values, body=named.get("body")))
     return parameter
 
 

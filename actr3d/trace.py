@@ -52,6 +52,11 @@ class TraceEvent(NamedTuple):
         """The number of its run in the trace, counted from 1."""
         return run_of(self.source)
 
+    @property
+    def data_text(self) -> str:
+        """The data as a readable text: `name=value name=value`."""
+        return " ".join(f"{name}={value}" for name, value in self.data.items())
+
     def to_json(self) -> str:
         """Returns the event as one line of JSON; the same event always gives the same bytes.
 

@@ -155,6 +155,11 @@ def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
     return escape_surrogates(line)
 
 
+def shortened(text: str, most: int) -> str:
+    """Returns a text; if it has more than `most` characters, its beginning and `...`."""
+    return text if len(text) <= most else f"{text[:most]}..."
+
+
 def escape_surrogates(text: str) -> str:
     """Returns a text in which lone surrogates, which no encoding has, are written as escapes such as `\\ud800`; JSON has the same ones."""
     return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")

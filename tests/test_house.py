@@ -46,7 +46,7 @@ PARTS: dict[str, set[str]] = {
     "vision": BASE | {"jit"} | BODILY,
     "motor": BASE | {"jit"} | BODILY,
     "sgoms": BASE | {"actr"},
-    "recording": BASE | BODILY | {"notebook"},
+    "recording": BASE | BODILY | {"notebook", "replacing"},
     "simulation": BASE | BODILY | SENSES | {"recording", "output", "notebook"},
     "runner": BASE | BODILY | SENSES | RUNNING | {"output", "parameter_schema"},
     "benchmark": {"registry"},

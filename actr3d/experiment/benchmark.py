@@ -26,7 +26,7 @@ from actr3d.benchmark import Figure, benchmark, processor_time_of
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.trial import record_trial, run_trial
-from actr3d.output import ModelOutput, printing_to
+from actr3d.output import printing_nothing
 
 DESIGN = "warren_whang_1987"
 SAMPLE = 8
@@ -70,7 +70,7 @@ def _aperture(folder: Path) -> list[Figure]:
     plain, count = _Trials("descriptive"), iter(range(1_000_000))
 
     def recorded() -> None:
-        with printing_to(ModelOutput(lambda _: None)):
+        with printing_nothing():
             for trial in plain.trials:
                 record_trial(plain.experiment, trial, folder / f"{next(count)}.rec", plain.helpers)
 

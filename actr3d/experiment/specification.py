@@ -14,7 +14,7 @@ import json
 import pkgutil
 import re
 import sys
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Collection, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import asdict, dataclass, field, fields
@@ -39,7 +39,7 @@ from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Group, Measured, Normal, Uniform, is_design
 from actr3d.experiment.human_data import library_human_data
 from actr3d.experiment.versions import experiment_versions
-from actr3d.output import ModelOutput, printing_to
+from actr3d.output import printing_nothing
 from actr3d.parameter_schema import Parameter, default_of
 from actr3d.runner.build_check import check_build, has_build
 
@@ -162,7 +162,7 @@ class Experiment:
     def __init__(self, specification: Specification, helpers: HelperTexts | None = None) -> None:
         self.specification = specification
         source, model = specification.design, specification.model
-        with naming_the_line(source, specification.name, {}):
+        with naming_the_line(source, specification.name):
             self._module = load_quietly(source, helpers)
         self.written = design_in(self._module, specification.name, source)
         """The design as its file has it, without the numbers and values of the specification."""
@@ -173,7 +173,7 @@ class Experiment:
         self.blueprint: Blueprint | None = None
         """Builds the model's simulations; None for a program."""
         if has_build(model.text):
-            with RunLimits(), printing_to(ModelOutput(lambda _: None)):
+            with RunLimits(), printing_nothing():
                 self.blueprint = load_blueprint(model, helpers or HelperTexts(model.helpers))
         self.parameters: tuple[Parameter, ...] = (
             self.blueprint.fields
@@ -289,10 +289,10 @@ def specify(
             found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
             raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
         chosen = marked[0]
-    with naming_the_line(source, chosen, {}):
+    with naming_the_line(source, chosen):
         module = load_quietly(source)
     of_design = design_in(module, chosen, source)
-    with naming_the_line(source, chosen, {}):
+    with naming_the_line(source, chosen):
         model = _model_of(of_design, path)
     specification = Specification(
         name=chosen,
@@ -306,7 +306,7 @@ def specify(
     experiment, people = Experiment(specification), library_human_data()
     human = experiment.design.human
     if human is not None and human not in people:
-        with naming_the_line(source, chosen, {}):
+        with naming_the_line(source, chosen):
             hint = alternatives(human, people, "the library has:")
             files = "a file is given to actr3d report --human, or actr3d fit --target"
             raise DesignError(f"Design.human: must name human data of the library (got '{human}'; {files}){hint}", "human")
@@ -415,7 +415,7 @@ def load_quietly(source: Source, helpers: HelperTexts | None = None) -> ModuleTy
         ModelFileError: If it is not Python 3.
         Exception: Any error that the file itself raises.
     """
-    with RunLimits(seed=0), printing_to(ModelOutput(lambda _: None)):
+    with RunLimits(seed=0), printing_nothing():
         return load_text(source.text, source.file, folder=Path(source.file).parent, helpers=helpers or HelperTexts(source.helpers))
 
 
@@ -429,7 +429,7 @@ def design_in(module: ModuleType, name: str, source: Source) -> Design:
     known = designs_of(module)
     if name not in known:
         raise ExperimentError(f"{source.file}: has no design '{name}'{alternatives(name, known, 'it has:')}")
-    with naming_the_line(source, name, {}):
+    with naming_the_line(source, name):
         try:
             inspect.signature(known[name]).bind()
         except TypeError as error:
@@ -444,13 +444,13 @@ def design_in(module: ModuleType, name: str, source: Source) -> Design:
 
 
 @contextmanager
-def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) -> Generator[None]:
+def naming_the_line(source: Source, function: str, replaced: Collection[str] = ()) -> Generator[None]:
     """Adds the place to the errors of a design that are raised inside the block.
 
     Args:
         source: The file of the design.
         function: The name of the design.
-        replaced: The values that replace those of the file.
+        replaced: The names of values that replace those of the file.
 
     Raises:
         DesignError: The same error after `file:line`, or after `--set` for a value that replaces one of the file.

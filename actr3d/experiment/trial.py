@@ -18,7 +18,7 @@ from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import DesignError, ExperimentError, did_you_mean, followed
 from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_python
 from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
-from actr3d.output import ModelOutput, printing_to
+from actr3d.output import printing_nothing
 from actr3d.parameter_schema import parameters_of
 from actr3d.runner.run import run_source
 from actr3d.runner.traceback_report import traceback_report
@@ -48,7 +48,7 @@ def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row
         helpers: Provides the helper modules of the model; see `Specification.sealed`.
     """
     try:
-        with printing_to(ModelOutput(lambda _: None)), unchecked():
+        with printing_nothing(), unchecked():
             end, measures = _run(experiment, trial, helpers)
         return {**_checked(measures, experiment, trial), "end": end, "error": None}
     except KeyboardInterrupt:
@@ -144,7 +144,7 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
     """
     design, source = experiment.design, experiment.specification.design
     kept: Row = {}
-    with naming_the_line(source, experiment.specification.name, {}):
+    with naming_the_line(source, experiment.specification.name):
         if not isinstance(measures, Mapping):
             raise DesignError(f"Design.results: must return measures by name (returned {measures!r})", "results")
         given = cast("Mapping[str, Any]", measures)

@@ -15,7 +15,7 @@ from actr3d.errors import DesignError
 from actr3d.experiment.specification import Experiment, naming_the_line
 from actr3d.experiment.trial import NO_MEASURE, WRONG_MEASURE, Row, check_name, limits_of, parameters_for
 from actr3d.experiment.trial_process import TrialProcess
-from actr3d.output import ModelOutput, printing_to
+from actr3d.output import printing_nothing
 from actr3d.weak_cache import weak_cache
 
 PATIENCE = 60.0
@@ -41,7 +41,7 @@ def known_measures(experiment: Experiment) -> tuple[str, ...] | None:
     try:
         trial = design.trial(0)
         limits = limits_of(experiment, trial)
-        with printing_to(ModelOutput(lambda _: None)), unchecked(), limits, shared_random(limits.program_seed):
+        with printing_nothing(), unchecked(), limits, shared_random(limits.program_seed):
             result = experiment.blueprint.build(parameters_for(experiment, trial))[0].result()
     except Exception:  # noqa: BLE001 - the trial fails, with this error in its row
         return None
@@ -57,7 +57,7 @@ def check_measures(experiment: Experiment) -> bool:
     specification, known = experiment.specification, known_measures(experiment)
     if known is None:
         return False
-    with naming_the_line(specification.design, specification.name, {}):
+    with naming_the_line(specification.design, specification.name):
         for measure in experiment.design.kept:
             check_name(measure.name, known)
     return True

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from actr3d.errors import RecordingError
 from actr3d.recording.schema import is_of_simulation
+from actr3d.values import shortened
 
 LARGEST = 2**63
 """All numbers of a recording are smaller."""
@@ -104,9 +105,7 @@ def check_fact(name: str, value: Any) -> None:
     """
     kind = _SIMULATION if is_of_simulation(name) else _KINDS.get(name)
     if kind is not None and not kind.fits(value):
-        shown = repr(value)
-        shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
-        raise RecordingError(f"the fact '{name}' of a recording must be {kind.words} (got {shown})")
+        raise RecordingError(f"the fact '{name}' of a recording must be {kind.words} (got {shortened(repr(value), _SHOWN)})")
 
 
 def check_facts(facts: Mapping[str, Any]) -> None:

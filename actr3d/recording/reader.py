@@ -24,6 +24,7 @@ from actr3d.recording.opening import opened
 from actr3d.recording.schema import COLUMNS, FORMAT, LEFT, SAME_AS, SCHEMA, is_of_simulation
 from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
+from actr3d.values import shortened
 
 SHOWN = 80
 """The maximum length of a quote from a damaged recording in an error message [characters]."""
@@ -349,7 +350,7 @@ def _short(value: Any) -> str:
         text = repr(value)
     except RecursionError:
         text = f"a {type(value).__name__}"
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+    return shortened(text, SHOWN)
 
 
 def _words(error: Exception) -> str:

@@ -6,6 +6,8 @@ import json
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from actr3d.values import shortened
+
 SHOWN = 200
 """The maximum length of a value in a message [characters]."""
 END = ("failed", "ended", "whole")
@@ -60,9 +62,5 @@ def first_difference(recorded: Mapping[str, Any], repeated: Mapping[str, Any], i
     for name in names:
         was, is_now = json.dumps(recorded.get(name)), json.dumps(repeated.get(name))
         if json.loads(was) != json.loads(is_now):
-            return f"the fact '{name}'; recorded: {_short(was)}; now: {_short(is_now)}"
+            return f"the fact '{name}'; recorded: {shortened(was, SHOWN)}; now: {shortened(is_now, SHOWN)}"
     return None
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

@@ -14,7 +14,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
-from actr3d.output import ModelOutput, printing_to
+from actr3d.output import printing_nothing
 from actr3d.recording import Recorded
 from actr3d.recording.schema import is_of_simulation
 from actr3d.runner.facts import CHECKED_BEFORE, END, NAMED, REACHED, UNCHECKED, built_facts, first_difference, program_facts
@@ -64,7 +64,7 @@ def replay(
         Exception: What `make` raises.
     """
     check_replayable(recorded, trust=trust or make is not None, any_version=any_version)
-    with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
+    with printing_nothing():  # the lines are among the events
         if recorded.facts["kind"] == "program":
             with _sealed(recorded, within) as helpers:
                 return _replay_program(recorded, helpers, progress)

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.kernel.run_limits import EndOfRun, Recorder, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
@@ -23,19 +23,11 @@ from actr3d.runner.build_check import check_build, has_build
 from actr3d.runner.facts import built_facts, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
 from actr3d.runner.traceback_report import failure
-from actr3d.trace import Listener, Trace, TraceEvent
+from actr3d.trace import Listener, Trace
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
     from actr3d.simulation.real_time import SimulationEnding
-
-
-class ProgramRecorder(Recorder, Protocol):
-    """Receives everything that a program does: a recording, or a comparison with one."""
-
-    def event_alone(self, event: TraceEvent) -> None:
-        """Receives an event."""
-        ...
 
 
 PATIENCE = 5.0
@@ -182,7 +174,7 @@ def _heard(trace: Trace, listener: Listener) -> Generator[None]:
 
 
 def play_program(
-    file: str, source: str, limits: RunLimits, recording: ProgramRecorder, helpers: HelperTexts, output: ProgramOutput
+    file: str, source: str, limits: RunLimits, recording: Recorder, helpers: HelperTexts, output: ProgramOutput
 ) -> SystemExit | None:
     """Runs a program, and records it to its end; returns the `SystemExit` that ended it, if any. `output` emits what it prints.
 

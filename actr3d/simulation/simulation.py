@@ -391,13 +391,11 @@ class Simulation:
         Raises:
             SimulationError: If the time is after the end of the run, or is not a whole number of ticks.
         """
-        self._enter()
-        to = whole_ticks(time, self._period, "seek")
-        if to > self.timeline.furthest:
-            raise SimulationError(f"seek({time:g}): the run has only reached {self.furthest:g} s; continue it instead")
         with self._call():
-            with self._random:
-                self.timeline.seek(to)
+            to = whole_ticks(time, self._period, "seek")
+            if to > self.timeline.furthest:
+                raise SimulationError(f"seek({time:g}): the run has only reached {self.furthest:g} s; continue it instead")
+            self.timeline.seek(to)
             self.event_log.check()
             self._observers.show(self._glimpse)
 
@@ -409,10 +407,8 @@ class Simulation:
         Raises:
             SimulationError: If there is no command up to now; and as `seek` does.
         """
-        self._enter()
         with self._call():
-            with self._random:
-                self.timeline.undo()
+            self.timeline.undo()
             self.event_log.check()
             self._observers.show(self._glimpse)
 

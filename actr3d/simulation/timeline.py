@@ -13,6 +13,7 @@ from actr3d.simulation.commands import Command, command_of
 from actr3d.simulation.event_log import EventLog
 from actr3d.simulation.lockstep import Lockstep
 from actr3d.trace import Trace, TraceEvent
+from actr3d.values import shortened
 from actr3d.world import World, WorldState
 
 SHOWN = 120
@@ -311,5 +312,4 @@ def _check_repeated(first: Trace, again: Trace, number: int | None) -> None:
 def _brief(event: TraceEvent | None) -> str:
     if event is None:
         return "nothing"
-    text = f"{event.source} {event.kind} {' '.join(f'{key}={value}' for key, value in event.data.items())}"
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+    return shortened(f"{event.source} {event.kind} {event.data_text}", SHOWN)

@@ -18,7 +18,7 @@ from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.loading.global_seed import shared_random
-from actr3d.output import ModelOutput, printing_to
+from actr3d.output import printing_nothing
 from actr3d.runner.model_factory import Blueprint
 from actr3d.simulation import Simulation
 from actr3d.trace import TraceEvent
@@ -138,7 +138,7 @@ def _plain(value: Any) -> Any:
 @contextmanager
 def shown_of(source: str, seed: int, **settings: Any) -> Generator[SimulationDisplay]:
     """Builds what a text describes, as a worker does."""
-    with RunLimits(seed=seed), shared_random(seed), printing_to(ModelOutput(lambda _: None)):
+    with RunLimits(seed=seed), shared_random(seed), printing_nothing():
         simulation, _ = Blueprint(source, str(MODELS / "model.py"), MODELS).build(settings)
         simulation.traced()
         yield SimulationDisplay(simulation)

@@ -6,16 +6,17 @@ from typing import Any
 
 import pytest
 
-from actr3d.parameter_schema import LiveCommand, Parameter
+from actr3d.configuration import Live
+from actr3d.parameter_schema import Parameter
 from actr3d.simulation import Simulation
 from workbench.live_parameters import parameter_set_by
 
 PARAMETERS = [
     Parameter(name="size", takes="number"),
-    Parameter(name="width", takes="number", live=LiveCommand(word="aperture")),
-    Parameter(name="speed", takes="number", live=LiveCommand(word="parameter", before=("walker.speed",))),
-    Parameter(name="pace", takes="number", live=LiveCommand(word="walk", before=("forward",), body="walker")),
-    Parameter(name="gaze", takes="number", live=LiveCommand(word="gaze")),
+    Parameter(name="width", takes="number", live=Live("aperture")),
+    Parameter(name="speed", takes="number", live=Live("parameter", "walker.speed")),
+    Parameter(name="pace", takes="number", live=Live("walk", "forward", body="walker")),
+    Parameter(name="gaze", takes="number", live=Live("gaze")),
 ]
 
 

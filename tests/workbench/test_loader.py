@@ -9,8 +9,8 @@ import pytest
 
 from actr3d import world
 from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.configuration import Live
 from actr3d.errors import ConfigurationError
-from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.model_factory import Blueprint
 from tests.helpers.paths import MODELS
 from workbench.loader import listing_of, misplaced_in, misspelt_in, problems_of, undefined_in
@@ -66,11 +66,11 @@ def test_the_parameters_of_what_a_file_builds() -> None:
     width = listing.parameter("width")
     assert (width.takes, width.default, width.above, width.most, width.unit) == ("number", 0.5, 0, 3, "m")
     assert (width.help, width.line) == ("The free width of the doorway [m].", 20)
-    assert width.live == LiveCommand(word="aperture")
+    assert width.live == Live("aperture")
     speed = listing.parameter("speed")
     assert (speed.takes, speed.default, speed.optional, speed.least, speed.unit) == ("number", None, True, 0.1, "m/s")
     assert speed.help == "How fast [m/s]; None for standing."
-    assert speed.live == LiveCommand(word="parameter", before=("walker.speed",))
+    assert speed.live == Live("parameter", "walker.speed")
     assert listing.parameter("side").choices == ("left", "right")
     takes = {parameter.name: parameter.takes for parameter in listing.parameters}
     assert takes == {
@@ -196,7 +196,7 @@ def test_parameters_read_from_a_text_are_those_of_the_loaded_model(name: str) ->
         fields = Blueprint(source, name, MODELS).fields
     told = listing_of(source, name).parameters
     assert [replace(one, line=0) for one in told] == list(fields)
-    assert [one.name for one in told if one.live == LiveCommand(word="aperture")] == [told[0].name if name == "doorway.py" else "aperture"]
+    assert [one.name for one in told if one.live == Live("aperture")] == [told[0].name if name == "doorway.py" else "aperture"]
 
 
 @pytest.mark.parametrize(

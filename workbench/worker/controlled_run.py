@@ -8,8 +8,8 @@ from typing import Any
 
 from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.clock import microseconds, seconds
+from actr3d.configuration import Live
 from actr3d.errors import RecordingError, SimulationError
-from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
 from workbench.chunk_curves import SUFFIX, ChunkCurves
@@ -110,7 +110,7 @@ class ControlledRun(ABC):
         return {}
 
     @abstractmethod
-    def live_parameter(self, name: str, value: Any) -> LiveCommand:
+    def live_parameter(self, name: str, value: Any) -> Live:
         """Returns how a parameter is changed during the run, after checking its new value.
 
         Raises:

@@ -114,7 +114,7 @@ class Facts(Message, frozen=True, kw_only=True):
     changes: bytes = b"[]"
     """JSON: the changes that a user can make by hand; see `worker.change_menu`."""
     live: bytes = b"[]"
-    """JSON: the parameters that can be changed during the run: name, unit, and the command that changes it (`LiveCommand`)."""
+    """JSON: the parameters that can be changed during the run: name, unit, and the command that changes it (`Live`)."""
     mj_model: bytes | None
     """The compiled scene in MuJoCo's binary format; None without a world."""
 

@@ -19,8 +19,8 @@ from actr3d.actr.loading import run_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.clock import seconds
+from actr3d.configuration import Live
 from actr3d.errors import SimulationError
-from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
 from actr3d.recording.writer import State as RecordedState
@@ -604,7 +604,7 @@ class ProgramRun(ControlledRun):
     def shown(self) -> SimulationDisplay | None:
         return self._shown
 
-    def live_parameter(self, name: str, value: Any) -> LiveCommand:
+    def live_parameter(self, name: str, value: Any) -> Live:
         raise SimulationError(f"'{name}': the parameters of a program cannot change while it runs; restart it with the new value")
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:

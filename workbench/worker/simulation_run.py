@@ -15,8 +15,8 @@ from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
+from actr3d.configuration import Live
 from actr3d.errors import SimulationError
-from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.facts import NAMED, built_facts
 from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.model_stdout import BuiltOutput
@@ -238,7 +238,7 @@ class SimulationRun(ControlledRun):
                 self._controller.show()
             raise
 
-    def live_parameter(self, name: str, value: Any) -> LiveCommand:
+    def live_parameter(self, name: str, value: Any) -> Live:
         parameter = self._listing.parameter(name)
         if parameter.live is None:
             raise SimulationError(f"'{name}' cannot change while a run goes on; restart it with the new value")

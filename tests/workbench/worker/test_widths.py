@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from actr3d.parameter_schema import LiveCommand, Parameter
+from actr3d.configuration import Live
+from actr3d.parameter_schema import Parameter
 from workbench.worker.simulation_display import width_limits
 
-OPENS = LiveCommand(word="aperture")
+OPENS = Live("aperture")
 
 
 def test_a_slider_has_the_bounds_of_the_parameter_that_sets_doorways() -> None:
-    other = Parameter(name="speed", takes="number", most=2.0, live=LiveCommand(word="parameter"))
+    other = Parameter(name="speed", takes="number", most=2.0, live=Live("parameter"))
     open_ones = Parameter(name="width", takes="number", above=0.0, most=3.0, live=OPENS)
     closed = Parameter(name="width", takes="number", least=0.25, below=1.2, live=OPENS)
     assert width_limits(["door"], [other, open_ones]) == {"door": (1, 300)}
