@@ -15,7 +15,7 @@ from actr3d.registry import Registry
 
 
 @dataclass(frozen=True, kw_only=True)
-class Figure:
+class Measurement:
     """One measured figure, and the limit that it must meet."""
 
     name: str
@@ -31,7 +31,7 @@ class Figure:
         return self.value >= self.limit if self.sense == "at least" else self.value <= self.limit
 
 
-Benchmark = Callable[[], list[Figure]]
+Benchmark = Callable[[], list[Measurement]]
 """Measures figures."""
 B = TypeVar("B", bound=Benchmark)
 BENCHMARKS: Registry[Benchmark] = Registry("benchmark")
@@ -85,7 +85,7 @@ def ratio(slow: Callable[[], float], fast: Callable[[], float], rounds: int = 5)
     return median(slow() / fast() for _ in range(rounds))
 
 
-def report(figures: Sequence[Figure], *, json_output: bool) -> int:
+def report(figures: Sequence[Measurement], *, json_output: bool) -> int:
     """Prints the figures; returns 0 if all meet their limits, else 1."""
     if json_output:
         found = {f.name: {"value": round(f.value, 4), "limit": f"{f.sense} {f.limit:g}", "met": f.is_met} for f in figures}

@@ -235,8 +235,8 @@ class Trace:
     def _fail(self, listener: Listener, event: TraceEvent, error: Exception) -> None:
         """Removes a listener that raised an error, and stops the runs so that the error can be raised."""
         if not isinstance(error, RecordingError):  # a user has not made the listener, and its message says all
-            who = f"{event.kind}' of {event.source} at {event.time:g} s"
-            error.add_note(f"raised by a listener of the trace, {plain(listener)}, for the event '{who}; it hears no more")
+            what = f"'{event.kind}' of {event.source} at {event.time:g} s"
+            error.add_note(f"raised by a listener of the trace, {plain(listener)}, for the event {what}; this listener has been removed")
         self._listeners = tuple(pair for pair in self._listeners if pair[0] != listener)
         self._set_flags()
         self._failures.append(error)

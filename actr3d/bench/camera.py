@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from actr3d.benchmark import Figure, benchmark, little_garbage, ratio, seconds_of
+from actr3d.benchmark import Measurement, benchmark, little_garbage, ratio, seconds_of
 from actr3d.camera import GeometricCamera
 
 RAYS = 10_000
@@ -105,7 +105,7 @@ def _more(many: list[tuple[Any, Any]], few: list[tuple[Any, Any]]) -> float:
 
 
 @benchmark("camera")
-def measure() -> list[Figure]:
+def measure() -> list[Measurement]:
     """Measures the cost of a view, relative to MuJoCo's rays in the same scene."""
     few, many = ([_scene(APERTURE + _loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
     open_few, open_many = ([_scene(_loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
@@ -114,11 +114,11 @@ def measure() -> list[Figure]:
     what, more = "single rays of mj_multiRay for a default view", "times a view of 10"
     with little_garbage():
         return [
-            Figure(name="aperture, 10 objects", value=_in_rays(few), sense="at most", limit=RAYS, what=what),
-            Figure(name="aperture, 100 objects", value=_in_rays(many), sense="at most", limit=RAYS, what=what),
-            Figure(name="crowd without walls, 100 objects", value=_in_rays(open_many), sense="at most", limit=RAYS, what=what),
-            Figure(name="body of 20 parts", value=_in_rays(body), sense="at most", limit=RAYS, what=what),
-            Figure(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", limit=RAYS, what=what),
-            Figure(name="100 objects", value=_more(many, few), sense="at most", limit=3, what=more),
-            Figure(name="100 objects without walls", value=_more(open_many, open_few), sense="at most", limit=3, what=more),
+            Measurement(name="aperture, 10 objects", value=_in_rays(few), sense="at most", limit=RAYS, what=what),
+            Measurement(name="aperture, 100 objects", value=_in_rays(many), sense="at most", limit=RAYS, what=what),
+            Measurement(name="crowd without walls, 100 objects", value=_in_rays(open_many), sense="at most", limit=RAYS, what=what),
+            Measurement(name="body of 20 parts", value=_in_rays(body), sense="at most", limit=RAYS, what=what),
+            Measurement(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", limit=RAYS, what=what),
+            Measurement(name="100 objects", value=_more(many, few), sense="at most", limit=3, what=more),
+            Measurement(name="100 objects without walls", value=_more(open_many, open_few), sense="at most", limit=3, what=more),
         ]

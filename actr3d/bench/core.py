@@ -18,7 +18,7 @@ from typing import Any
 
 from actr3d.actr import ACTR, Buffer, Memory
 from actr3d.actr.loading import load_text
-from actr3d.benchmark import Figure, benchmark, ratio, seconds_of
+from actr3d.benchmark import Measurement, benchmark, ratio, seconds_of
 
 THREE = """
 from python_actr import *
@@ -184,7 +184,7 @@ def _traced_ratio() -> float:
 
 
 @benchmark("core")
-def measure() -> list[Figure]:
+def measure() -> list[Measurement]:
     """Compares the cognitive core with python_actr, in one run on one machine.
 
     Raises:
@@ -197,11 +197,11 @@ def measure() -> list[Figure]:
     small, large = _request_cost(1_000), _request_cost(100_000)
     speed = "times python_actr's speed"
     return [
-        Figure(name="three productions", value=three, sense="at least", limit=1.5, what="times python_actr's cycles a second"),
-        Figure(name="300 productions", value=hundreds, sense="at least", limit=10, what="times python_actr's cycles a second"),
-        Figure(name="counting, 2,000 chunks", value=counting, sense="at least", limit=100, what=f"{speed}, from learning them on"),
-        Figure(name="a count among 2,000 chunks", value=each_count, sense="at least", limit=40, what=f"{speed}, once they are learned"),
-        Figure(name="request, 100,000 chunks", value=ratio(large, small), sense="at most", limit=2, what="times one among 1,000"),
-        Figure(name="idle tick", value=_idle_tick(), sense="at most", limit=3, what="us more than an empty loop"),
-        Figure(name="full tracing", value=_traced_ratio(), sense="at most", limit=2, what="times the untraced counting model"),
+        Measurement(name="three productions", value=three, sense="at least", limit=1.5, what="times python_actr's cycles a second"),
+        Measurement(name="300 productions", value=hundreds, sense="at least", limit=10, what="times python_actr's cycles a second"),
+        Measurement(name="counting, 2,000 chunks", value=counting, sense="at least", limit=100, what=f"{speed}, from learning them on"),
+        Measurement(name="a count among 2,000 chunks", value=each_count, sense="at least", limit=40, what=f"{speed}, once learned"),
+        Measurement(name="request, 100,000 chunks", value=ratio(large, small), sense="at most", limit=2, what="times one among 1,000"),
+        Measurement(name="idle tick", value=_idle_tick(), sense="at most", limit=3, what="us more than an empty loop"),
+        Measurement(name="full tracing", value=_traced_ratio(), sense="at most", limit=2, what="times the untraced counting model"),
     ]

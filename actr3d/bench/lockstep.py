@@ -17,7 +17,7 @@ import mujoco
 
 from actr3d.actr.loading import load_text
 from actr3d.bench import camera
-from actr3d.benchmark import Figure, benchmark, processor_time_of
+from actr3d.benchmark import Measurement, benchmark, processor_time_of
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, WorldState
 
@@ -178,7 +178,7 @@ def _bare_cost(make: Callable[[], Simulation], warm: int = WARM, ticks: int = TI
 
 
 @benchmark("lockstep")
-def measure() -> list[Figure]:
+def measure() -> list[Measurement]:
     """Measures the cost of lockstep, vision and recording, relative to the bare physics of the same scene on the same states."""
     times = "times the bare physics"
     plain, bare, recorded = _best(typical)
@@ -186,14 +186,14 @@ def measure() -> list[Figure]:
     watching, looking = partial(trial, WATCHING), partial(trial, LOOKING)
     _cost(looking, 0, 20)  # compiles the detectors likewise
     return [
-        Figure(name="tick and tock, no vision", value=plain / bare, sense="at most", limit=3, what=times),
-        Figure(
+        Measurement(name="tick and tock, no vision", value=plain / bare, sense="at most", limit=3, what=times),
+        Measurement(
             name="cognition and lockstep", value=(plain - bare) * 1e6, sense="at most", limit=40, what="us a tick beyond the bare physics"
         ),
-        Figure(name="an aperture trial with vision", value=_seeing(trial), sense="at most", limit=10, what=times),
-        Figure(name="a trial that looks at every tick", value=_seeing(watching), sense="at most", limit=10, what=times),
-        Figure(name="a trial that looks for openings and obstacles", value=_seeing(looking), sense="at most", limit=10, what=times),
-        Figure(name="recording everything", value=recorded / plain, sense="at most", limit=1.5, what="times the unrecorded run"),
+        Measurement(name="an aperture trial with vision", value=_seeing(trial), sense="at most", limit=10, what=times),
+        Measurement(name="a trial that looks at every tick", value=_seeing(watching), sense="at most", limit=10, what=times),
+        Measurement(name="a trial that looks for openings and obstacles", value=_seeing(looking), sense="at most", limit=10, what=times),
+        Measurement(name="recording everything", value=recorded / plain, sense="at most", limit=1.5, what="times the unrecorded run"),
         *camera.measure(),
     ]
 

@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 from actr3d.bench.lockstep import typical
-from actr3d.benchmark import Figure, benchmark, seconds_of
+from actr3d.benchmark import Measurement, benchmark, seconds_of
 
 TICKS = 1_000_000
 """The number of ticks: 10,000 s of simulated time."""
@@ -27,7 +27,7 @@ def resident() -> float:
 
 
 @benchmark("soak")
-def measure(ticks: int = TICKS) -> list[Figure]:
+def measure(ticks: int = TICKS) -> list[Measurement]:
     """Runs a million ticks of the typical agent, and measures drift and the growth of memory."""
     resident()  # where it cannot be measured, this is known before the run
     simulation = typical()
@@ -42,13 +42,13 @@ def measure(ticks: int = TICKS) -> list[Figure]:
     # The history kept for going back grows to its limits in the first part.
     begin = memory[1]
     return [
-        Figure(name="drift", value=drift, sense="at most", limit=0, what=f"us between the clocks after {ticks:,} ticks"),
-        Figure(
+        Measurement(name="drift", value=drift, sense="at most", limit=0, what=f"us between the clocks after {ticks:,} ticks"),
+        Measurement(
             name="growth",
             value=memory[-1] - begin,
             sense="at most",
             limit=2,
             what=f"MB of memory ({begin:.0f} MB after two tenths, {memory[-1]:.0f} in the end)",
         ),
-        Figure(name="time", value=spent / ticks * 1e6, sense="at most", limit=1000, what=f"us a tick ({spent:.0f} s in all)"),
+        Measurement(name="time", value=spent / ticks * 1e6, sense="at most", limit=1000, what=f"us a tick ({spent:.0f} s in all)"),
     ]

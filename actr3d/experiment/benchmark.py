@@ -22,7 +22,7 @@ import mujoco
 from dask.system import CPU_COUNT
 
 from actr3d.actr.loading.helper_modules import HelperTexts
-from actr3d.benchmark import Figure, benchmark, processor_time_of
+from actr3d.benchmark import Measurement, benchmark, processor_time_of
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.trial import record_trial, run_trial
@@ -65,7 +65,7 @@ def counting():
 '''
 
 
-def _aperture(folder: Path) -> list[Figure]:
+def _aperture(folder: Path) -> list[Measurement]:
     """Returns the cost of trials of the aperture model as multiples of their physics, and of all trials of the paper's design."""
     plain, count = _Trials("descriptive"), iter(range(1_000_000))
 
@@ -78,18 +78,18 @@ def _aperture(folder: Path) -> list[Figure]:
     minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / CPU_COUNT / 60
     predictive = _Trials("predictive")
     return [
-        Figure(name="a trial", value=costs[0], sense="at most", limit=3, what="processor time of a trial / of mj_step in it"),
-        Figure(
+        Measurement(name="a trial", value=costs[0], sense="at most", limit=3, what="processor time of a trial / of mj_step in it"),
+        Measurement(
             name="a recorded trial", value=costs[1], sense="at most", limit=3, what="processor time of a recorded trial / of mj_step in it"
         ),
-        Figure(
+        Measurement(
             name="a predictive trial",
             value=_cost(predictive.run),
             sense="at most",
             limit=4,
             what="processor time of a trial of the predictive variant / of mj_step in it",
         ),
-        Figure(name="the paper's design", value=minutes, sense="at most", limit=20, what="minutes for 9,600 trials on all processors"),
+        Measurement(name="the paper's design", value=minutes, sense="at most", limit=20, what="minutes for 9,600 trials on all processors"),
     ]
 
 
@@ -136,7 +136,7 @@ def _cost(work: Callable[[], object]) -> float:
         return median(once() for _ in range(3))
 
 
-def _small(folder: Path, trials: int) -> list[Figure]:
+def _small(folder: Path, trials: int) -> list[Measurement]:
     """Returns how the cost of small trials changes over many of them, as a multiple of other work beside them: machines change speed."""
     path = folder / "counting.py"
     path.write_text(PROGRAM, encoding="utf-8")
@@ -153,7 +153,7 @@ def _small(folder: Path, trials: int) -> list[Figure]:
     part = trials // 4
     change = median(costs[-part:]) / median(costs[:part])
     what = f"cost of the last {part:,} of {trials:,} trials / of the first {part:,}"
-    return [Figure(name="many trials", value=change, sense="at most", limit=1.1, what=what)]
+    return [Measurement(name="many trials", value=change, sense="at most", limit=1.1, what=what)]
 
 
 def _beside() -> list[str]:
@@ -161,7 +161,7 @@ def _beside() -> list[str]:
     return [str(number) for number in range(5_000)]
 
 
-def _rows(folder: Path, count: int) -> list[Figure]:
+def _rows(folder: Path, count: int) -> list[Measurement]:
     """Returns how fast rows are written and how the memory for them grows."""
     from actr3d.experiment.store import Finished
 
@@ -193,8 +193,8 @@ def _rows(folder: Path, count: int) -> list[Figure]:
             peaks.append(tracemalloc.get_traced_memory()[1])
             tracemalloc.stop()
     return [
-        Figure(name="writing", value=rate, sense="at least", limit=5_000, what=f"rows a second, of {count}"),
-        Figure(
+        Measurement(name="writing", value=rate, sense="at least", limit=5_000, what=f"rows a second, of {count}"),
+        Measurement(
             name="memory", value=peaks[1] / peaks[0], sense="at most", limit=1.2, what=f"peak memory for {count} rows / for {count // 10}"
         ),
     ]
@@ -208,7 +208,7 @@ def _begin(experiment: Experiment, store: Store, client: Any) -> None:
     run_experiment(experiment, store, client, show=lambda now: now.done < 8 or enough.set(), stop=enough)
 
 
-def _workers(folder: Path) -> list[Figure]:
+def _workers(folder: Path) -> list[Measurement]:
     """Returns the speed of two workers relative to one."""
     from actr3d.experiment.cluster import local_cluster, run_experiment
 
@@ -223,12 +223,14 @@ def _workers(folder: Path) -> list[Figure]:
                 run_experiment(experiment, store, client)
                 took.append(time.perf_counter() - begin)
     return [
-        Figure(name="two workers", value=took[0] / took[1], sense="at least", limit=1.9, what="trials a second with two workers / with one")
+        Measurement(
+            name="two workers", value=took[0] / took[1], sense="at least", limit=1.9, what="trials a second / those with one worker"
+        )
     ]
 
 
 @benchmark("experiment")
-def measure() -> list[Figure]:
+def measure() -> list[Measurement]:
     """Measures the cost of a trial, relative to its physics, and how experiments scale with workers, trials and rows."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -236,7 +238,7 @@ def measure() -> list[Figure]:
 
 
 @benchmark("experiment-size")
-def measure_size() -> list[Figure]:
+def measure_size() -> list[Measurement]:
     """Measures how experiments scale with 100,000 trials and 1,000,000 rows: takes about 25 minutes."""
     with tempfile.TemporaryDirectory() as name:
         return [*_small(Path(name), MOST_SMALL), *_rows(Path(name), MOST_ROWS)]

@@ -62,7 +62,7 @@ SETTINGS: dict[str, Any] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Progress:
+class ExperimentProgress:
     """How far an experiment is."""
 
     done: int
@@ -129,9 +129,9 @@ def run_experiment(
     store: Store,
     client: Any,
     *,
-    show: Callable[[Progress], object] = lambda _: None,
+    show: Callable[[ExperimentProgress], object] = lambda _: None,
     stop: threading.Event | None = None,
-    sure: bool = True,
+    checked: bool = True,
 ) -> None:
     """Runs all trials that have no row yet.
 
@@ -141,7 +141,7 @@ def run_experiment(
         client: The `distributed.Client` of the cluster.
         show: Called after each batch of trials, and when the number of workers changes.
         stop: Ends the run after the batches that have finished, when it is set by another thread.
-        sure: Whether the names of the measures were checked before; otherwise the run ends if the first trial lacks one.
+        checked: Whether the names of the measures were checked before; otherwise the run ends if the first trial lacks one.
 
     Raises:
         DesignError: If the first trial lacks a measure, or has one that cannot be a measure.
@@ -151,7 +151,7 @@ def run_experiment(
     total = len(experiment.design)
     with store.only_writer():
         left = store.missing(total)
-        run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures, sure)
+        run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures, checked)
         run.all(left)
 
 
@@ -163,20 +163,20 @@ class _Run:
         experiment: Experiment,
         store: Store,
         client: Any,
-        show: Callable[[Progress], object],
+        show: Callable[[ExperimentProgress], object],
         stop: threading.Event,
         done: int,
         failures: int,
-        sure: bool,
+        checked: bool,
     ) -> None:
         self._experiment, self._store, self._client, self._show, self._stop = experiment, store, client, show, stop
         self._json = experiment.specification.to_json()
         self._versions = ", ".join(f"{name} {text}" for name, text in experiment_versions().items())
-        self._done, self._failures, self._seconds, self._sure = done, failures, BATCH, sure
+        self._done, self._failures, self._seconds, self._checked = done, failures, BATCH, checked
         self._waiting: dict[Any, list[int]] = {}
         self._suspects: deque[int] = deque()
         self._killed: dict[int, int] = {}
-        self._shown: Progress | None = None
+        self._shown: ExperimentProgress | None = None
         self._finished: SimpleQueue[Any] = SimpleQueue()
 
     def all(self, numbers: Iterator[int]) -> None:
@@ -241,7 +241,7 @@ class _Run:
             self._submit(numbers)
             return
         if batch.rows[0][0] == 0:
-            check_row(batch.rows[0][1], sure=self._sure)
+            check_row(batch.rows[0][1], checked=self._checked)
         self._add(batch)
         if left := numbers[len(batch.rows) :]:
             self._submit(left)
@@ -274,10 +274,10 @@ class _Run:
             self._add(Batch(rows=[(number, row, 0.0)], worker=""))
             self._report()
 
-    def _report(self) -> Progress:
+    def _report(self) -> ExperimentProgress:
         """Returns the progress, and shows it if it is not shown yet."""
         total = len(self._experiment.design)
-        progress = Progress(done=self._done, total=total, failures=self._failures, workers=self._workers())
+        progress = ExperimentProgress(done=self._done, total=total, failures=self._failures, workers=self._workers())
         if progress != self._shown:
             self._shown = progress
             self._show(progress)

@@ -35,7 +35,7 @@ from actr3d.experiment.versions import experiment_versions
 from actr3d.values import to_json
 
 if TYPE_CHECKING:
-    from actr3d.experiment.cluster import Progress as State
+    from actr3d.experiment.cluster import ExperimentProgress
     from actr3d.experiment.fit import Agreement, FitResult
 
 EVERY = 10.0
@@ -95,7 +95,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
         first = process.run(text, 0, design.limit)  # it also takes the time of what is loaded or compiled once
         check_row(first)
         second = process.run(text, min(1, total - 1), design.limit)
-        check_row(second, sure=first["error"] is None)
+        check_row(second, checked=first["error"] is None)
         seconds = process.seconds
     finally:
         process.end()
@@ -156,7 +156,7 @@ def run(
     with ExitStack() as opened:
         # Before the folder is made: a cluster may not answer.
         cluster = None if scheduler is None else opened.enter_context(existing_cluster(scheduler))
-        experiment, store, sure = _opened(opened, name, values, participants, trials, folder, resume=resume, any_version=any_version)
+        experiment, store, checked = _opened(opened, name, values, participants, trials, folder, resume=resume, any_version=any_version)
         total, begin, before = len(experiment.design), time.monotonic(), store.count
         facts = facts_of(experiment)
         # Of a finished experiment, nothing need be written on a disk that can only be read.
@@ -171,7 +171,7 @@ def run(
                 local_cluster(workers or _processors()) if cluster is None else nullcontext(cluster) as client,
                 _progress(out, "", total) as show,
             ):
-                run_experiment(experiment, store, client, show=show, stop=stop, sure=sure)
+                run_experiment(experiment, store, client, show=show, stop=stop, checked=checked)
             took, ran = time.monotonic() - begin, store.count - before
             out.line(f"{_trials(ran)} in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
         if writes:
@@ -414,7 +414,7 @@ def _opened(
     resume: bool,
     any_version: bool,
 ) -> tuple[Experiment, Store, bool]:
-    """Creates or opens the folder of an experiment, which the stack `opened` closes; also returns `sure` for `run_experiment`."""
+    """Creates or opens the folder of an experiment, which the stack `opened` closes; also returns `checked` for `run_experiment`."""
     changed = bool(values) or participants is not None or trials is not None or folder is not None
     # The folder of an experiment has the name of its design, unless it was given another one.
     if is_folder(name) and not (changed and name in library_designs()):
@@ -428,12 +428,12 @@ def _opened(
     experiment = specify(name, participants=participants, trials=trials, values=values)
     folder = folder or experiment.specification.name
     if not (resume and is_folder(folder)):
-        sure = check_measures(experiment) or try_measures(experiment) is not None
-        return experiment, opened.enter_context(Store.create(folder, experiment.specification)), sure
+        checked = check_measures(experiment) or try_measures(experiment) is not None
+        return experiment, opened.enter_context(Store.create(folder, experiment.specification)), checked
     store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)
     there, now = store.specification, experiment.specification
-    if different := experiment.differences(there):
+    if different := experiment.differences_from(there):
         same = f"choose another --out, or continue it unchanged: actr3d experiment {folder} --resume{' --any-version' * any_version}"
         raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
     # The files may be at another place now, and other files that the model reads beside them.
@@ -522,7 +522,7 @@ def _stopping() -> Generator[threading.Event]:
 
 
 @contextmanager
-def _progress(out: Output, what: str, total: int) -> Generator[Callable[[State], None]]:
+def _progress(out: Output, what: str, total: int) -> Generator[Callable[[ExperimentProgress], None]]:
     """Prints a heading, and shows the progress of an experiment inside the block: a bar in a terminal, otherwise lines.
 
     Args:
@@ -546,7 +546,7 @@ def _progress(out: Output, what: str, total: int) -> Generator[Callable[[State],
         task = bar.add_task("", total=total, rate="", failed="")
         begin: list[tuple[float, int]] = []
 
-        def show(state: State) -> None:
+        def show(state: ExperimentProgress) -> None:
             begin.append((time.monotonic(), state.done)) if not begin else None
             failed = f"[red]{state.failures:,} failed[/red]" if state.failures else ""
             bar.update(task, completed=state.done, rate=_rate(begin[0], state), failed=failed)
@@ -554,11 +554,11 @@ def _progress(out: Output, what: str, total: int) -> Generator[Callable[[State],
         yield show
 
 
-def _lines(out: Output, about: Mapping[str, str]) -> Callable[[State], None]:
+def _lines(out: Output, about: Mapping[str, str]) -> Callable[[ExperimentProgress], None]:
     begin: list[tuple[float, int]] = []
     last = [0.0]
 
-    def show(state: State) -> None:
+    def show(state: ExperimentProgress) -> None:
         now = time.monotonic()
         out.event("progress", {**about, **asdict(state)})
         if not begin:
@@ -570,7 +570,7 @@ def _lines(out: Output, about: Mapping[str, str]) -> Callable[[State], None]:
     return show
 
 
-def _rate(begin: tuple[float, int], state: State) -> str:
+def _rate(begin: tuple[float, int], state: ExperimentProgress) -> str:
     took, done = time.monotonic() - begin[0], state.done - begin[1]
     workers = {0: "no workers: waiting for one", 1: "1 worker"}.get(state.workers, f"{state.workers} workers")
     if not done or not state.workers:

@@ -443,18 +443,17 @@ class Design(Configuration):
                 of_groups.setdefault(name, {})[group_name] = value
         return {**of_groups, "--trials": self.trials, **self.factors, **self.settings, **own}
 
-    def different(self, other: Design) -> list[str]:
-        """Returns the names, as in `changeable`, of the values that differ between this design and another one."""
-        this, that = self.changeable(), other.changeable()
-        return [name for name in {**this, **that} if name not in this or name not in that or _key(this[name]) != _key(that[name])]
+    def changed_names(self, there: Design) -> list[str]:
+        """Returns the names, as in `changeable`, of the values that differ from those of another design."""
+        before, now = there.changeable(), self.changeable()
+        return [name for name in {**before, **now} if name not in before or name not in now or _key(before[name]) != _key(now[name])]
 
-    def differences(self, other: Design) -> list[str]:
-        """Returns in words which of the values that `changed` can change differ between this design ("there") and another one ("now")."""
-        this, that = self.changeable(), other.changeable()
+    def differences_from(self, there: Design) -> list[str]:
+        """Returns in words which of the values that `changed` can change differ from those of another design ("there")."""
         found: list[str] = []
-        for name in self.different(other):
-            there, now = (repr(given[name]) if name in given else "not set" for given in (this, that))
-            found.append(f"{name}: {there} there, {now} now")
+        for name in self.changed_names(there):
+            before, now = (repr(given[name]) if name in given else "not set" for given in (there.changeable(), self.changeable()))
+            found.append(f"{name}: {before} there, {now} now")
         return found
 
     # -- checks against the model

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
-from actr3d.experiment.cluster import Progress, run_experiment
+from actr3d.experiment.cluster import ExperimentProgress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.emulator import STEPS, Emulator
 from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels, plain_text
@@ -42,7 +42,7 @@ from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.trial_measures import known_measures
 from actr3d.runner.cli_options import read_settings
 
-ProgressBar = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
+ProgressBar = Callable[[str, int], AbstractContextManager[Callable[[ExperimentProgress], object]]]
 """Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
 
 NARROWEST = 1e-4
@@ -282,7 +282,7 @@ class Fit:
             seen[one.name] = one
             if one.name in varied:  # also of one level, which the seeds name
                 shown = ", ".join(map(str, varied[one.name]))
-                raise SettingError(f"--parameter {one.name}: is a factor of the design ({shown}); name a parameter that is none")
+                raise SettingError(f"--parameter {one.name}: is a factor of the design ({shown}); choose a parameter that is not a factor")
 
     @property
     def _names(self) -> list[str]:
@@ -383,7 +383,7 @@ class Fit:
     def _propose(self, number: int) -> dict[str, float]:
         """Returns the next candidate, which depends only on the earlier candidates and the seed."""
         if number < STARTING:
-            rng = random.Random(f"{self._seed} {number // STARTING}")
+            rng = random.Random(f"{self._seed} 0")
             columns: dict[str, float] = {}
             for one in self._ranges:  # a Latin hypercube: each tenth of each range once
                 order = list(range(STARTING))

@@ -99,18 +99,18 @@ class Specification(Configuration):
             del content[one]["file"]
         return content
 
-    def differences(self, other: Specification) -> list[str]:
-        """Returns the differences of the texts from those of another specification in words."""
-        this, that = self.content(), other.content()
+    def differences_from(self, there: Specification) -> list[str]:
+        """Returns in words how its texts differ from those of another specification ("there")."""
+        before, now = there.content(), self.content()
         found: list[str] = []
-        if self.name != other.name:
-            found.append(f"the design is '{self.name}' there, '{other.name}' now")
+        if self.name != there.name:
+            found.append(f"the design is '{there.name}' there, '{self.name}' now")
         for one in ("design", "model"):
-            if this[one]["text"] != that[one]["text"]:
-                lines = itertools.zip_longest(this[one]["text"].split("\n"), that[one]["text"].split("\n"))
-                first = next(number for number, (there, now) in enumerate(lines, start=1) if there != now)
-                found.append(f"the {one} differs from line {first} on ({getattr(other, one).file})")
-            modules = (this[one]["helpers"], that[one]["helpers"])
+            if before[one]["text"] != now[one]["text"]:
+                lines = itertools.zip_longest(before[one]["text"].split("\n"), now[one]["text"].split("\n"))
+                first = next(number for number, (old, new) in enumerate(lines, start=1) if old != new)
+                found.append(f"the {one} differs from line {first} on ({getattr(self, one).file})")
+            modules = (before[one]["helpers"], now[one]["helpers"])
             names = [name for name in {**modules[0], **modules[1]} if modules[0].get(name) != modules[1].get(name)]
             found += [f"the module '{name}' beside the {one} differs" for name in names]
         return found
@@ -215,15 +215,15 @@ class Experiment:
     def changes(self) -> dict[str, Any]:
         """The numbers and values of the specification that are not those of the design as its file has it, by name."""
         counts = {"participants": self.specification.participants, "trials": self.specification.trials}
-        different = {name.removeprefix("--") for name in self.written.different(self.design)}
+        different = {name.removeprefix("--") for name in self.design.changed_names(self.written)}
         return {name: value for name, value in {**counts, **self.specification.values}.items() if name in different}
 
-    def differences(self, there: Specification) -> list[str]:
-        """Returns in words how a stored experiment differs from this one, apart from versions.
+    def differences_from(self, there: Specification) -> list[str]:
+        """Returns in words how this experiment differs from a stored one ("there"), apart from versions.
 
         If their texts are the same, the resulting designs are compared, however their numbers and values were given.
         """
-        return there.differences(self.specification) or self._changed_as(there).differences(self.design)
+        return self.specification.differences_from(there) or self.design.differences_from(self._changed_as(there))
 
     @property
     def description(self) -> str:

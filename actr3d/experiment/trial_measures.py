@@ -21,8 +21,8 @@ from actr3d.weak_cache import weak_cache
 PATIENCE = 60.0
 """The maximum time for which a first trial runs whose measures are not known before [s]."""
 NOTHING_LEFT = (
-    "ended because no agent had anything left to do (`done`). A body that only moves on does not keep a trial going: if it was to do more, "
-    "let a production wait for it, and end with `self.stop()`."
+    "ended because no agent had anything left to do (`done`). A moving body alone does not continue a trial. If the agent should do more, "
+    "add a production that waits for the body, and end with `self.stop()`."
 )
 """What a trial with a body may have ended too early for."""
 
@@ -79,17 +79,17 @@ def try_measures(experiment: Experiment) -> Row | None:
     return row if row["error"] is None else None
 
 
-def check_row(row: Row, *, sure: bool = False) -> None:
+def check_row(row: Row, *, checked: bool = False) -> None:
     """Checks that a trial has all measures of its design.
 
     Args:
         row: The row of the trial.
-        sure: Whether the names of the measures were checked before: then a missing measure is a failure of this trial only, and no error.
+        checked: Whether the names of the measures were checked before: then a missing measure is a failure of this trial only.
 
     Raises:
         DesignError: If one is missing, or cannot be a measure.
     """
-    if row["end"] == WRONG_MEASURE or (row["end"] == NO_MEASURE and not sure):
+    if row["end"] == WRONG_MEASURE or (row["end"] == NO_MEASURE and not checked):
         raise DesignError(row["error"].removeprefix("error: "), "measures")
 
 

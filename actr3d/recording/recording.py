@@ -60,8 +60,8 @@ class Recording:
         """By its checksum, the fact of a program's simulation that has been written whole; later ones of the same scene refer to it."""
         self._over = {"ended": False, "failed": False}
         """Whether each of these facts has been written, and holds."""
-        self.spare = False
-        """Whether nobody needs it, because the run still repeats another recording: then the run goes on if the file cannot be written."""
+        self.may_fail = False
+        """Whether the run goes on if the file cannot be written: it still repeats another recording, so nobody needs this one."""
         self.ending: Callable[[], None] | None = None
         """Called before the recording is closed, to add the last items; items added later are not recorded."""
 
@@ -170,7 +170,7 @@ class Recording:
         writer = self._writer
         if len(writer.events) > MAX_WAITING or len(writer.states) > MAX_WAITING:
             writer.flush()
-        if writer.failure is not None and not self.spare:
+        if writer.failure is not None and not self.may_fail:
             raise writer.failure
 
     def flush(self) -> None:

@@ -74,7 +74,7 @@ class Answer(NamedTuple):
 
 
 class NoWriter:
-    """Takes the place of a `Writer` where nothing is recorded, such as in a forked copy of the process: it drops everything."""
+    """A writer that discards everything, for forked copies of the process."""
 
     failure = None
 

@@ -114,7 +114,7 @@ class Comparator:
             self._differ(f"the physics at the end of {moment}: {first_number(then.data, data)}")
         self._compare(f"contacts in {moment}", _listed(then.contacts), _listed(contacts))
         if then.events != self.events:
-            self._differ(f"there were {then.events:,} events at the end of {moment}, and are {self.events:,} now")
+            self._differ(f"events up to the end of {moment}; recorded: {then.events:,}; now: {self.events:,}")
         self.ticks += tick > 0
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
@@ -184,10 +184,10 @@ def _listed(contacts: Contacts) -> str:
 def first_number(then: bytes, now: bytes) -> str:
     """Returns a text that names the first number of a state that differs."""
     if len(then) != len(now):
-        return f"a state was {len(then)} bytes, and is {len(now)}: another scene"
+        return f"the size of a state, so that of the scene; recorded: {len(then)} bytes; now: {len(now)}"
     import numpy as np  # a program without a world does without it
 
     was, is_now = np.frombuffer(then), np.frombuffer(now)
     differ = np.flatnonzero(was.view(np.int64) != is_now.view(np.int64))
     first = int(differ[0])
-    return f"number {first} of {was.size} was {was[first]!r}, and is {is_now[first]!r}"
+    return f"number {first} of {was.size}; recorded: {was[first]!r}; now: {is_now[first]!r}"

@@ -107,7 +107,7 @@ def run_source(
 
 @contextmanager
 def _restored(limits: RunLimits) -> Generator[None]:
-    """Gives limits their own seed, trace and recorder again after a run, as they may be used for another one."""
+    """Restores the seed, trace and recorder of limits after a run: they may be used for another one."""
     own = limits.seed, limits.trace, limits.recorder
     try:
         yield

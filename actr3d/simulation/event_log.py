@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol
 from weakref import ref
@@ -15,11 +15,9 @@ from actr3d.simulation.commands import Command
 from actr3d.simulation.program_run import ProgramRun
 from actr3d.simulation.stdout_capture import StdoutCapture
 from actr3d.simulation.tick_contacts import TickContacts
-from actr3d.trace import Run, Trace, TraceEvent
+from actr3d.trace import Listener, Run, Trace, TraceEvent
 from actr3d.trace_kinds import LEVELS
 from actr3d.world import World
-
-Listener = Callable[[TraceEvent], object]
 
 
 class StateKeeper(Protocol):

@@ -24,7 +24,7 @@ from actr3d.recording import Recording
 from actr3d.recording.schema import OWN_FACTS
 from actr3d.simulation.agents import Factory
 from actr3d.simulation.commands import Command
-from actr3d.simulation.event_log import EventLog, Listener
+from actr3d.simulation.event_log import EventLog
 from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.lockstep import Lockstep
 from actr3d.simulation.measure import Measure
@@ -33,7 +33,7 @@ from actr3d.simulation.real_time import RealTime, RunReport, SimulationEnding
 from actr3d.simulation.surroundings import scene_facts
 from actr3d.simulation.timeline import Timeline
 from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
-from actr3d.trace import Trace, TraceEvent
+from actr3d.trace import Listener, Trace, TraceEvent
 from actr3d.world import Scene, World
 
 

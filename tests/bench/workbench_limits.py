@@ -22,7 +22,7 @@ from statistics import median
 from typing import Any, TypeVar
 from unittest.mock import patch
 
-from actr3d.benchmark import Figure, report
+from actr3d.benchmark import Measurement, report
 from tests.bench.pages import CLICKS, PANS, Client, attached, await_scene, looking, opened
 from tests.helpers.page import PART, browser_path, launched
 from tests.helpers.workbench_server import MODELS, Served, served
@@ -73,7 +73,7 @@ def main() -> int:
     options = parser.parse_args()
     path = browser_path()
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # with it, each start would compile all libraries again
-    figures: list[Figure] = []
+    figures: list[Measurement] = []
     with tempfile.TemporaryDirectory() as made, launched(path) if path is not None else nullcontext() as browser:
         folder = Path(made) / "models"
         figures += [_first_start(folder, browser), _starts(folder, browser)]
@@ -125,21 +125,21 @@ def _shows_the_start(page: Any) -> None:
     page.locator("#time", has_text="0.00").wait_for(timeout=180_000)
 
 
-def _first_start(folder: Path, browser: Any) -> Figure:
+def _first_start(folder: Path, browser: Any) -> Measurement:
     """Measures a start after which nothing that is compiled was kept: with folders of its own for bytecode and for compiled functions."""
     with tempfile.TemporaryDirectory() as made:
         folders = {name: str(Path(made) / name) for name in ("PYTHONPYCACHEPREFIX", "NUMBA_CACHE_DIR")}
         with patch.dict(os.environ, folders):
             taken = _start(folder, browser)
     what = "[s] from the command to the model ready to run on the page, when nothing is compiled yet"
-    return Figure(name="first start", value=taken, sense="at most", limit=20, what=what)
+    return Measurement(name="first start", value=taken, sense="at most", limit=20, what=what)
 
 
-def _starts(folder: Path, browser: Any) -> Figure:
+def _starts(folder: Path, browser: Any) -> Measurement:
     """Measures how long it takes from the command to a page with the model ready to run."""
     taken = [_start(folder, browser) for _ in range(STARTS + 1)][1:]  # the first may not be warm
     what = "[s] from the command to the model ready to run on the page, median of warm starts"
-    return Figure(name="start", value=median(taken), sense="at most", limit=3, what=what)
+    return Measurement(name="start", value=median(taken), sense="at most", limit=3, what=what)
 
 
 def _start(folder: Path, browser: Any) -> float:
@@ -161,7 +161,7 @@ async def _ready(server: Served) -> None:
         await client.until(lambda state: state["status"] == "paused")
 
 
-async def _speed(server: Served, session: str, *, with_page: bool) -> Figure:
+async def _speed(server: Served, session: str, *, with_page: bool) -> Measurement:
     """Measures how fast the model runs with the page attached, or a client that takes as much, beside how fast it runs headless."""
     headless = _headless()
     rates: list[float] = []
@@ -179,7 +179,7 @@ async def _speed(server: Served, session: str, *, with_page: bool) -> Figure:
     _say(f"speed: headless {headless:.1f} times real time, attached {', '.join(f'{rate:.1f}' for rate in rates)}")
     limit = 0.8 * min(headless, 20.0)
     what = f"times real time with everything shown, median; headless {headless:.1f}"
-    return Figure(name="speed", value=median(rates), sense="at least", limit=limit, what=what)
+    return Measurement(name="speed", value=median(rates), sense="at least", limit=limit, what=what)
 
 
 def _headless() -> float:
@@ -187,7 +187,7 @@ def _headless() -> float:
     return float(subprocess.run(command, capture_output=True, text=True, check=True).stderr.splitlines()[-1])
 
 
-def _loads(page: Any) -> Figure:
+def _loads(page: Any) -> Measurement:
     """Measures how long the page takes to load again and show the model."""
     taken: list[float] = []
     for _ in range(RUNS):
@@ -196,29 +196,29 @@ def _loads(page: Any) -> Figure:
         _shows_the_start(page)
         taken.append(time.perf_counter() - begin)
     page.locator(".scene-cover").wait_for(state="detached", timeout=60_000)
-    return Figure(name="page", value=median(taken), sense="at most", limit=1.5, what="[s] to load the page with the model, median")
+    return Measurement(name="page", value=median(taken), sense="at most", limit=1.5, what="[s] to load the page with the model, median")
 
 
-def _pans(page: Any) -> Figure:
+def _pans(page: Any) -> Measurement:
     """Measures the script time of a picture of the timeline that is moved along."""
     taken = sorted(page.evaluate(PANS, [EVENTS, RUNS * 4]))
     what = f"[ms] of script for a picture of the timeline of an hour with {EVENTS:,} events, of ten nine"
-    return Figure(name="pan", value=taken[9 * len(taken) // 10], sense="at most", limit=16, what=what)
+    return Measurement(name="pan", value=taken[9 * len(taken) // 10], sense="at most", limit=16, what=what)
 
 
-def _clicks(page: Any) -> Figure:
+def _clicks(page: Any) -> Measurement:
     """Measures how long it takes from a click on step until the page shows another time."""
     page.locator("#restart").click()
     _shows_the_start(page)
     page.wait_for_timeout(1000)
     taken = sorted(page.evaluate(CLICKS, CLICKED))
     _say(f"click: median {median(taken):.1f} ms, of ten nine within {taken[9 * len(taken) // 10]:.1f} ms, longest {taken[-1]:.1f} ms")
-    return Figure(
+    return Measurement(
         name="click", value=median(taken), sense="at most", limit=50, what="[ms] from a click on step to the updated page, median"
     )
 
 
-async def _steps(server: Served, session: str) -> Figure:
+async def _steps(server: Served, session: str) -> Measurement:
     """Measures the same where there is no browser: from a step to the state that it leads to."""
     taken: list[float] = []
     async with attached(server, session) as client, looking(server, session):
@@ -230,12 +230,12 @@ async def _steps(server: Served, session: str) -> Figure:
             await client.until(lambda state, number=number: state["tick"] == number and state["status"] == "paused")
             taken.append(1000 * (time.perf_counter() - begin))
             await asyncio.sleep(0.06)
-    return Figure(
+    return Measurement(
         name="step", value=median(taken), sense="at most", limit=50, what="[ms] from a step to its state, without a browser, median"
     )
 
 
-async def _edits(server: Served, session: str) -> Figure:
+async def _edits(server: Served, session: str) -> Measurement:
     """Measures how long it takes from the command to run a changed file to the first tick of that."""
     taken: list[float] = []
     async with attached(server, session) as client:
@@ -249,7 +249,7 @@ async def _edits(server: Served, session: str) -> Figure:
             await client.until(lambda state: state["tick"] > 0)
             taken.append(time.perf_counter() - begin)
     _say(f"edit: {', '.join(f'{one:.2f}' for one in taken)} s")
-    return Figure(
+    return Measurement(
         name="edit", value=median(taken), sense="at most", limit=1, what="[s] from saving a changed file to its first tick, median"
     )
 
@@ -258,7 +258,7 @@ def _save(server: Served, text: str, version: str) -> None:
     server.put("/api/model", {"path": MODEL, "text": text, "version": version}).raise_for_status()
 
 
-async def _stops(server: Served) -> Figure:
+async def _stops(server: Served) -> Measurement:
     """Measures how long it takes to end a model in an endless loop."""
     (server.folder / "loop.py").write_text(LOOP, encoding="utf-8")
     session = opened(server, "loop.py", run=True)
@@ -273,10 +273,10 @@ async def _stops(server: Served) -> Figure:
             taken.append(time.perf_counter() - begin)
             await client.restart(run=True)
     _say(f"stop: {', '.join(f'{one:.2f}' for one in taken)} s")
-    return Figure(name="stop", value=max(taken), sense="at most", limit=2, what="[s] until a model in an endless loop is gone, longest")
+    return Measurement(name="stop", value=max(taken), sense="at most", limit=2, what="[s] until a model in an endless loop is gone")
 
 
-async def _soak(server: Served, seconds: float) -> Figure:
+async def _soak(server: Served, seconds: float) -> Measurement:
     """Measures by how much the memory of the server grows while clients are attached, and runs follow one another."""
     session = opened(server, MODEL)
     await_scene(server, session)
@@ -301,7 +301,7 @@ async def _soak(server: Served, seconds: float) -> Figure:
         last = memory_of(server.process.pid)
     _say(f"memory: {first / 1e6:.1f} MB at first, {last / 1e6:.1f} MB after {runs} runs in {seconds / 60:g} minutes")
     what = f"[%] growth of the server's memory with {CLIENTS} clients in {seconds / 60:g} minutes"
-    return Figure(name="memory", value=100 * (last / first - 1), sense="at most", limit=5, what=what)
+    return Measurement(name="memory", value=100 * (last / first - 1), sense="at most", limit=5, what=what)
 
 
 async def _one_run(user: Client) -> None:

@@ -28,7 +28,15 @@ from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment import cluster
 from actr3d.experiment import table as table_of_trials
-from actr3d.experiment.cluster import Progress, cluster_versions, end_processes, existing_cluster, local_cluster, run_batch, run_experiment
+from actr3d.experiment.cluster import (
+    ExperimentProgress,
+    cluster_versions,
+    end_processes,
+    existing_cluster,
+    local_cluster,
+    run_batch,
+    run_experiment,
+)
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
@@ -78,7 +86,7 @@ def reference(path: Path, folder: Path) -> str:
 
 def test_rows_are_the_same_for_any_number_of_workers(tmp_path: Path, client: Any) -> None:
     path = write_experiment(tmp_path, participants=4, trials=10)
-    seen: list[Progress] = []
+    seen: list[ExperimentProgress] = []
     assert run_here(client, path, tmp_path / "two", show=seen.append) == reference(path, tmp_path / "one")
     assert (seen[0].done, seen[-1].done, seen[-1].total, seen[-1].failures) == (0, 120, 120, 0)
     batches = [after.done - before.done for before, after in pairwise(seen)]
@@ -90,7 +98,7 @@ def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> 
     factors = '{"mode": ["count", "fail", "hang", "die"]}'
     waiting = COUNTER.replace("        pass", "        __import__('time').sleep(60)")  # to hang by computing is in test_trials.py
     path = write_experiment(tmp_path, factors=factors, participants=1, trials=1, limit=1, model=waiting)
-    seen: list[Progress] = []
+    seen: list[ExperimentProgress] = []
     rows = csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out", show=seen.append)))
     ends = sorted((row["mode"], row["end"]) for row in rows)
     assert ends == sorted([("count", "end"), ("fail", "error"), ("hang", "time limit"), ("die", "crash")])
@@ -116,7 +124,7 @@ def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: An
     experiment, stop = specify(str(path)), threading.Event()
     counts: list[int] = []
 
-    def show(progress: Progress) -> None:
+    def show(progress: ExperimentProgress) -> None:
         counts.append(progress.done)
         if progress.done > 5:
             stop.set()
@@ -139,7 +147,7 @@ def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
     monkeypatch.setattr(cluster, "LONGEST_BATCH", 0.0)
     batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions())
     assert [number for number, _, _ in batch.rows] == [3]
-    seen: list[Progress] = []
+    seen: list[ExperimentProgress] = []
     assert run_here(client, path, tmp_path / "short", show=seen.append) == expected
     assert [done for done, _ in groupby(progress.done for progress in seen)] == list(range(25))
     assert all(before != after for before, after in pairwise(seen)), "a worker that comes or goes is news, too"
@@ -148,7 +156,7 @@ def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
 def test_batches_that_have_finished_are_kept_when_a_run_is_stopped(tmp_path: Path, client: Any) -> None:
     experiment, stop = specify(str(write_experiment(tmp_path, factors='{"n": [1]}', participants=1, trials=4))), threading.Event()
 
-    def stop_once_all_have_finished(progress: Progress) -> None:
+    def stop_once_all_have_finished(progress: ExperimentProgress) -> None:
         while progress.done and not all(future.status == "finished" for future in client.futures.values()):
             time.sleep(0.02)
         if progress.done:
@@ -348,7 +356,7 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, clie
                     killed.append(dice.choice(workers))
                     os.kill(killed[-1], signal.SIGKILL)
 
-        def begin_once_a_trial_is_done(progress: Progress) -> None:
+        def begin_once_a_trial_is_done(progress: ExperimentProgress) -> None:
             if progress.done:
                 begun.set()
 
@@ -410,11 +418,11 @@ def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, client: Any, 
 @pytest.mark.parametrize("reports", [1, 2])
 def test_a_client_that_is_closed_at_any_moment_has_lost_the_scheduler(tmp_path: Path, reports: int) -> None:
     path = write_experiment(tmp_path, participants=2, trials=4)
-    heard: list[Progress] = []
+    heard: list[ExperimentProgress] = []
     with local_cluster(1) as here:
         client: Any = here
 
-        def close(progress: Progress) -> None:
+        def close(progress: ExperimentProgress) -> None:
             heard.append(progress)
             if len(heard) == reports:
                 client.close()
@@ -565,12 +573,12 @@ def test_specifications_differ_in_what_determines_the_rows_alone(tmp_path: Path,
     experiment = specify(str(write_experiment(tmp_path)), values={"n": (1, 2)})
     one = replace(experiment.specification, name=name)
     changed = replace(one, name=other, versions={"python": "2"}, values={"n": [1, 2]}, model=replace(one.model, file="/elsewhere.py"))
-    assert one.differences(changed) == says
+    assert changed.differences_from(one) == says
     helped = replace(changed, model=replace(one.model, helpers={"pace": ["pace.py", ""]}))
-    assert one.differences(helped) == [*says, "the module 'pace' beside the model differs"]
+    assert helped.differences_from(one) == [*says, "the module 'pace' beside the model differs"]
     there = replace(experiment.specification, versions={"python": "2"}, participants=3, values={"mode": "x"})
     more = ["--participants: {'all': 3} there, {'all': 2} now", "n: [1, 2, 5] there, [1, 2] now", "mode: 'x' there, not set now"]
-    assert experiment.differences(there) == more
+    assert experiment.differences_from(there) == more
 
 
 def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

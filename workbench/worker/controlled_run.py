@@ -242,7 +242,7 @@ class ControlledRun(ABC):
         """
         self.ancestors = [[recording, time], *before]
         if self._recording is not None:
-            self._recording.spare = False
+            self._recording.may_fail = False
         self._record(branched=time, origin=recording, ancestors=before)
         self.flush()
 
@@ -264,7 +264,7 @@ class ControlledRun(ABC):
         """
         try:
             self._recording = begin()
-            self._recording.spare = spare
+            self._recording.may_fail = spare
         except RecordingError as error:
             if not spare:
                 raise
@@ -291,7 +291,7 @@ class ControlledRun(ABC):
         recording = self._recording
         if recording is None:
             return
-        if recording.spare:
+        if recording.may_fail:
             recording.stop()
             return
         if left:

@@ -178,7 +178,7 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
     title = f"Compared with {other.label}"
     if not any(name in other.measures and same_unit(results, other, name) for name in results.measures):
         return Section(title=title, parts=[Caution(f"{other.label} has no measure in common with {results.label}.")])
-    different = [*other.specification.differences(results.specification), *other.design.differences(results.design)]
+    different = [*results.specification.differences_from(other.specification), *results.design.differences_from(other.design)]
     what = f"{other.label} (“there”: {other.specification.name}, {len(other.rows):,} trials)"
     text = f"{what} differs from this experiment (“now”) in: {'; '.join(different) or 'nothing that was set'}."
     found: list[str | Table | Plot | Caution] = [text, *levels_compared(results, other)]

@@ -471,7 +471,7 @@ def test_code_in_a_caution_is_shown_as_code(tmp_path: Path) -> None:
 def test_trials_that_all_ended_with_nothing_left_to_do_are_a_caution(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, participants=10, trials=1)
     results = read_results(store_rows(tmp_path / "out", str(path), count))
-    text = "All trials ended because no agent had anything left to do (`done`). A body that only moves on does not keep a trial going"
+    text = "All trials ended because no agent had anything left to do (`done`). A moving body alone does not continue a trial"
     all_done = results.rows.assign(end="done")
     assert text in cautions(what_was_run(replace(results, rows=all_done)).parts)
     one_stopped = results.rows.assign(end=["stop", *all_done["end"][1:]])
