@@ -77,7 +77,8 @@ def record_trial(experiment: Experiment, trial: Trial, file: Path | str, helpers
     model, built = experiment.specification.model, experiment.blueprint is not None
     text = model.text if built else with_values(model.text, parameters_for(experiment, trial))
     settings = parameters_for(experiment, trial) if built else None
-    return run_source(text, model.file, limits_of(experiment, trial), settings=settings, record=file, helpers=helpers)
+    with unchecked():
+        return run_source(text, model.file, limits_of(experiment, trial), settings=settings, record=file, helpers=helpers)
 
 
 def parameters_for(experiment: Experiment, trial: Trial) -> dict[str, Any]:
