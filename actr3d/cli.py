@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
-from actr3d.errors import DesignError, SettingError, alternatives
+from actr3d.errors import DesignError, SettingError, alternatives, reason_of
 from actr3d.output import ModelOutput, all_written, printing_to, standard_output
 from actr3d.parameter_schema import Parameter
 from actr3d.recording.schema import versions
@@ -137,7 +137,7 @@ def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
 def _complain_of_output(error: OSError) -> int:
     """Prints why the output cannot be written, unless its reader has only closed it."""
     if not isinstance(error, BrokenPipeError):
-        print(f"error: cannot write the output: {error.strerror}", file=sys.stderr)
+        print(f"error: cannot write the output: {reason_of(error)}", file=sys.stderr)
     return 1
 
 

@@ -136,6 +136,11 @@ WITHOUT_BODY = "an agent without a body needs neither build nor Simulation: its 
 """The hint for users who build a simulation without a world."""
 
 
+def reason_of(error: Exception) -> str:
+    """Returns what an error says; of one of the operating system only the reason, such as `No space left on device`."""
+    return error.strerror or str(error) if isinstance(error, OSError) else str(error)
+
+
 def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str:
     """Returns `"; did you mean 'x'?"` for the known name nearest to `word`, or an empty string."""
     near = nearest(word, tuple(sorted({str(name) for name in known} - {word})), cutoff)

@@ -22,7 +22,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from actr3d.errors import DesignError, ExperimentError, SettingError
+from actr3d.errors import DesignError, ExperimentError, SettingError, reason_of
 from actr3d.experiment.design import OWN_COLUMNS
 from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
@@ -463,7 +463,7 @@ def _folder_of_fit(path: Path) -> Generator[None]:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ExperimentError(f"--out: cannot make '{path}' ({error.strerror or error})") from None
+        raise ExperimentError(f"--out: cannot make '{path}' ({reason_of(error)})") from None
     with only_process(path, "a fit there"):
         yield
 

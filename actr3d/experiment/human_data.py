@@ -39,7 +39,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean
+from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean, reason_of
 from actr3d.parameter_schema import Parameter
 
 FOLDER = Path(__file__).parent / "human"
@@ -157,7 +157,7 @@ def _text(path: Path | str) -> str:
     except IsADirectoryError:
         why = "it is a folder; name a file"
     except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        why = reason_of(error) if isinstance(error, OSError) else "it is not UTF-8"
     raise ExperimentError(f"{path}: cannot be read as human data ({why})")
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from socket import gethostname
 from typing import Any, Self, cast
 
-from actr3d.errors import ExperimentError
+from actr3d.errors import ExperimentError, reason_of
 from actr3d.experiment.specification import Specification
 from actr3d.experiment.trial import Row
 from actr3d.replacing import UNFINISHED, creating, replace_file
@@ -107,7 +107,7 @@ class Store:
         try:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
-            raise ExperimentError(f"'{self.folder}' holds no experiment: cannot read {SPECIFICATION} ({_why(error)})") from None
+            raise ExperimentError(f"'{self.folder}' holds no experiment: cannot read {SPECIFICATION} ({reason_of(error)})") from None
         self.specification = Specification.from_json(text, str(path))
         try:
             self._database = self._opened()
@@ -167,7 +167,7 @@ class Store:
         except FileExistsError:
             raise ExperimentError(f"--out: '{path}' holds an experiment already; continue it with --resume, or name a new folder") from None
         except OSError as error:
-            raise ExperimentError(f"--out: cannot make '{path}' ({_why(error)})") from None
+            raise ExperimentError(f"--out: cannot make '{path}' ({reason_of(error)})") from None
         return cls(path)
 
     def close(self) -> None:
@@ -335,7 +335,7 @@ def only_process(folder: Path, what: str) -> Generator[None]:
     try:
         file = (folder / LOCK).open("a+", encoding="utf-8")
     except OSError as error:
-        raise ExperimentError(f"'{folder}': cannot be written ({_why(error)})") from None
+        raise ExperimentError(f"'{folder}': cannot be written ({reason_of(error)})") from None
     with file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -359,7 +359,7 @@ def write_whole(path: Path, text: str) -> None:
     try:
         replace_file(path, text.encode())
     except OSError as error:
-        raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
+        raise ExperimentError(f"'{path}': cannot be written ({reason_of(error)})") from None
 
 
 def _unit_of(name: str) -> str | None:
@@ -407,10 +407,6 @@ def _joined(one: str, other: str) -> str:
     if "boolean" in (one, other) and not {one, other} <= {"null", "boolean"}:
         return "text"
     return max(one, other, key=COLUMN_TYPES.index)
-
-
-def _why(error: Exception) -> str:
-    return error.strerror or str(error) if isinstance(error, OSError) else str(error)
 
 
 def summary(error: str) -> str:

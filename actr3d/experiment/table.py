@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from actr3d.errors import ExperimentError
+from actr3d.errors import ExperimentError, reason_of
 from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.store import ROWS_AT_ONCE, Column, Store
 from actr3d.replacing import replacing
@@ -36,7 +36,7 @@ def export(store: Store) -> list[Path]:
             _replaced(store.folder / PARQUET, lambda path: _write_parquet(path, columns, store.rows())),
         ]
     except OSError as error:
-        raise ExperimentError(f"'{store.folder}': cannot write the table of trials ({error.strerror or error})") from None
+        raise ExperimentError(f"'{store.folder}': cannot write the table of trials ({reason_of(error)})") from None
 
 
 def _replaced(path: Path, write: Callable[[Path], None]) -> Path:

@@ -6,7 +6,7 @@ import sqlite3
 import time
 from pathlib import Path
 
-from actr3d.errors import RecordingError
+from actr3d.errors import RecordingError, reason_of
 
 LARGEST_VALUE = 250_000_000
 """The maximum size of a value in a table [bytes]."""
@@ -28,7 +28,7 @@ def opened(path: Path) -> sqlite3.Connection:
         path = path.resolve(strict=True)
         there = path.is_file()
     except PermissionError as error:
-        raise RecordingError(f"cannot open the recording '{path}': {error.strerror}") from None
+        raise RecordingError(f"cannot open the recording '{path}': {reason_of(error)}") from None
     except (OSError, RuntimeError, ValueError):  # nothing there, a loop of links, or not a valid path
         there = False
     if not there:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.actr.modules.answers import plain_answer
-from actr3d.errors import RecordingError
+from actr3d.errors import RecordingError, reason_of
 from actr3d.recording.checksums import Checksums
 from actr3d.recording.key import make_key, seal
 from actr3d.recording.opening import COMPANIONS
@@ -367,7 +367,7 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, FileExistsError):
         return "it exists already, and a recording does not replace what is there"
     if isinstance(error, OSError):
-        return FULL if error.errno == errno.ENOSPC else error.strerror or str(error)
+        return FULL if error.errno == errno.ENOSPC else reason_of(error)
     if isinstance(error, (sqlite3.Error, ValueError)):
         return FULL if "full" in str(error) else str(error)
     return f"{type(error).__name__}: {error}".removesuffix(": ")

@@ -531,7 +531,9 @@ def test_a_parameter_that_is_given_twice_is_refused(tmp_path: Path) -> None:
 def test_a_parameter_that_is_a_factor_is_refused(tmp_path: Path, levels: str) -> None:
     shown = levels.strip("[]").replace("'", "")
     line = LINE.replace('{"x": [1, 2, 3, 4, 5]}', f'{{"x": [1, 2, 3, 4, 5], "offset": {levels}}}')
-    with pytest.raises(SettingError, match=rf"--parameter offset: is a factor of the design \({shown}\); choose a parameter that is not a factor"):
+    with pytest.raises(
+        SettingError, match=rf"--parameter offset: is a factor of the design \({shown}\); choose a parameter that is not a factor"
+    ):
         fit_of(tmp_path, None, "offset=1..3", line=line)
 
 

@@ -12,7 +12,7 @@ from types import CodeType
 
 from actr3d.actr.kernel.source_code import syntax_tree, with_filename
 from actr3d.actr.loading.python2 import print_to, python_2_reason
-from actr3d.errors import ModelFileError, did_you_mean
+from actr3d.errors import ModelFileError, did_you_mean, reason_of
 
 LONGEST = 200
 """The maximum length of a quoted line [characters]."""
@@ -41,7 +41,7 @@ def read_bytes(path: Path) -> bytes:
     except IsADirectoryError:
         raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
     except OSError as error:
-        raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
+        raise ModelFileError(f"cannot read the model file '{path}': {reason_of(error)}") from None
 
 
 def decode_source(data: bytes, path: Path) -> str:

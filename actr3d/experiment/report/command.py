@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from actr3d.errors import ExperimentError
+from actr3d.errors import ExperimentError, reason_of
 from actr3d.experiment.report.figures import png, svg
 from actr3d.experiment.report.general import analysis_sections, comparison_section, human_section, measure_sections, what_was_run
 from actr3d.experiment.report.page import MADE_BY, page
@@ -85,7 +85,7 @@ def _check_place(final: Path) -> None:
         if Path.cwd().is_relative_to(final):
             raise ExperimentError(f"'{final}': a new report would replace the folder in which you are; leave it, or name another --out")
     except OSError as error:
-        raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
+        raise ExperimentError(f"'{final}': cannot be read ({reason_of(error)})") from None
 
 
 def _write(final: Path, results: Results, sections: Sequence[Section], *, hint: str) -> None:
@@ -110,7 +110,7 @@ def _write(final: Path, results: Results, sections: Sequence[Section], *, hint: 
             (part / PAGE).write_text(_page(results, sections, drawings), encoding="utf-8")
             _replace(final, part, Path(place))
     except OSError as error:
-        raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error}){hint}") from None
+        raise ExperimentError(f"'{final}': cannot write the report ({reason_of(error)}){hint}") from None
 
 
 def _replace(final: Path, part: Path, place: Path) -> None:
