@@ -83,7 +83,7 @@ class Scheduler:
         self.in_lockstep = False
         """Whether a simulation advances the time tick by tick, and checks the limits itself."""
         if self.limits is not None:
-            self.limits.clock = lambda: self.now_us
+            self.limits.follow(lambda: self.now_us)
         self._ends = Ends()
         self.running = False
         """Whether a run is in progress."""
