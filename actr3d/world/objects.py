@@ -182,7 +182,7 @@ class Objects:
                 whatever is in them.
         """
         physics = self._physics
-        physics.refresh()
+        physics.refresh_contacts()
         contacts, depths = physics.mj_data.contact, dict[str, Penetration]()
         pairs: list[list[int]] = contacts.geom.tolist()
         kinds = [[self._kind(geom) for geom in pair] for pair in pairs]

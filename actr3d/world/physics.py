@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import mujoco
@@ -17,6 +18,9 @@ INTEGRATION = mjtState.mjSTATE_INTEGRATION
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
+
+_IN_FWD_POSITION = (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_flex, mujoco.mj_tendon, mujoco.mj_makeM, mujoco.mj_collision)
+"""What `mj_fwdPosition` computes, too."""
 
 
 class Physics:
@@ -40,8 +44,8 @@ class Physics:
         """Physics steps since the start."""
         self.state_number = 0
         """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
-        self._updated = 0
-        """How much of what follows from the state is up to date: 1 positions, 2 also contacts, 3 all but forces, 4 all."""
+        self._updated: set[Callable[[MjModel, MjData], None]] = set()
+        """What computed those parts of what follows from the state that are up to date."""
         self._scratch: MjData | None = None
         self._numbers = np.empty(mujoco.mj_stateSize(self.mj_model, INTEGRATION))
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
@@ -66,7 +70,7 @@ class Physics:
 
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds, commands or the compiled model have changed."""
-        self._updated = 0
+        self._updated.clear()
         self.state_number += 1
 
     def refresh_positions(self) -> None:
@@ -74,37 +78,39 @@ class Physics:
 
         After a step, MuJoCo's geometry (`xpos`, contacts) is that of the positions before it.
         """
-        if self._updated < 1:
-            mujoco.mj_kinematics(self.mj_model, self.mj_data)
-            self._updated = 1
+        self._update(mujoco.mj_kinematics)
+        if self.mj_model.nflex:  # the points of soft objects are not part of the state
+            self._update(mujoco.mj_comPos, mujoco.mj_flex)
+
+    def refresh_velocities(self) -> None:
+        """Updates positions and the velocities of all parts to the state, once per state."""
+        self._update(mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel)
 
     def refresh_inertia(self) -> None:
-        """Updates positions and inertia to the state."""
-        self.refresh_positions()
-        for update in (mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM):
-            update(self.mj_model, self.mj_data)
+        """Updates positions and inertia to the state, once per state."""
+        self._update(mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM)
 
     def refresh_contacts(self) -> None:
         """Updates positions and contacts to the state, once per state."""
-        if self._updated < 2:
-            self.refresh_positions()
-            mujoco.mj_collision(self.mj_model, self.mj_data)
-            self._updated = 2
+        self.refresh_positions()
+        self._update(mujoco.mj_collision)
 
     def refresh(self) -> None:
         """Updates all that follows from the positions, such as contacts and rays, to the state, once per state."""
-        if self._updated < 3:
-            mujoco.mj_fwdPosition(self.mj_model, self.mj_data)
-            self._updated = 3
+        self._update(mujoco.mj_fwdPosition)
+        self._updated.update(_IN_FWD_POSITION)
 
     def solve(self) -> None:
         """Updates forces and accelerations to the state too, once per state, without an effect on later steps."""
         self.refresh()
-        if self._updated < 4:
-            start = self.mj_data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
-            mujoco.mj_forwardSkip(self.mj_model, self.mj_data, mujoco.mjtStage.mjSTAGE_POS, 1)
-            self.mj_data.qacc_warmstart[:] = start
-            self._updated = 4
+        self._update(_solve)
+
+    def _update(self, *parts: Callable[[MjModel, MjData], None]) -> None:
+        """Computes parts of what follows from the state, those that are out of date."""
+        for part in parts:
+            if part not in self._updated:
+                part(self.mj_model, self.mj_data)
+                self._updated.add(part)
 
     def accelerations(self) -> NDArray[np.float64]:
         """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2, rad/s^2].
@@ -178,3 +184,10 @@ class Physics:
     def _owner(self, geom: int) -> str:
         body = int(self.mj_model.geom_bodyid[geom])
         return (body and self._root_name(body)) or str(self.mj_model.geom(geom).name)
+
+
+def _solve(model: MjModel, data: MjData) -> None:
+    """Computes forces and accelerations, without an effect on later steps."""
+    start = data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
+    mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 1)
+    data.qacc_warmstart[:] = start

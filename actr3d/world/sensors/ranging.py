@@ -73,7 +73,7 @@ def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
         WorldError: If the reach is not a number from 0 on.
     """
     reach = number(reach, "proximity: reach", 0)
-    body.physics.refresh()
+    body.physics.refresh_positions()
     model, data = body.physics.mj_model, body.physics.mj_data
     nearest, found = reach, None
     for bound, mine, other in _candidates(body, reach):
@@ -103,7 +103,7 @@ def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
 
 def _cast(body: Body, at: str | None, angles: NDArray[np.float64], elevation: float, reach: float) -> tuple[float | None, ...]:
     """Returns the lengths of rays, None beyond reach."""
-    body.physics.refresh()
+    body.physics.refresh_positions()
     name = at if at is not None else body.eye if body.eye is not None else body.anatomy.base
     origin, axes = body.frame(name)
     flat, up = math.cos(elevation), np.full(len(angles), math.sin(elevation))
