@@ -106,7 +106,7 @@ class Imported(Configuration):
 
     def roots(self) -> tuple[str, ...]:
         """Returns the names in the file of the bodies directly in the world; empty for one without a name."""
-        return tuple(body.name for body in _specification(_document(self.files or ()), self.free).worldbody.bodies)
+        return _roots(self.files or (), self.free)
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Attaches it at its place and orientation."""
@@ -151,6 +151,12 @@ def _package_folder(path: Path) -> Path:
 @lru_cache(maxsize=64)
 def _document(files: Files) -> Document:
     return read_imported(AssetFolder(Path(), WorldError, files), files[0][0])
+
+
+@lru_cache(maxsize=64)
+def _roots(files: Files, free: bool) -> tuple[str, ...]:
+    """Returns the names of the bodies directly in the world; empty for one without a name."""
+    return tuple(body.name for body in _specification(_document(files), free).worldbody.bodies)
 
 
 @lru_cache(maxsize=64)
