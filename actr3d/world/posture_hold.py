@@ -10,7 +10,6 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError
 from actr3d.world.actuated_dofs import ActuatedDofs, Row
 from actr3d.world.base import Base
 from actr3d.world.contacts import BodyContacts
@@ -99,10 +98,8 @@ class PostureHold:
         servo accelerates it, so that no command can press a limb into a wall, or throw the body about.
 
         Raises:
-            WorldError: If no servo moves it.
+            WorldError: If no servo moves it, and the speed is not 0.
         """
-        if joint.servo is None:
-            raise WorldError(f"joint '{joint.name}' has no servo that could move it")
         if self.joint_speed(joint) == speed:
             return
         row = self.row(joint.name)
