@@ -8,6 +8,7 @@ from typing import Any
 
 from actr3d.world.anatomy import Steering
 from actr3d.world.base import Base
+from actr3d.world.frames import wrapped
 from actr3d.world.joints import Joint
 from actr3d.world.physics import Physics
 from actr3d.world.posture_hold import PostureHold
@@ -181,13 +182,13 @@ class MotionCommands:
     def _rest(self, name: str) -> float:
         """Returns the rest of a turn of the base [rad]."""
         rest = self.targets[name][0] - self._base.place[2]
-        return rest if name == TURN else _wrapped(rest)
+        return rest if name == TURN else wrapped(rest)
 
     def _walk(self, x: float, y: float, speed: float, turn: float, duration: float) -> None:
         """Turns towards the point and walks straight to it."""
         at_x, at_y, heading = self._base.place
         way = math.dist((x, y), (at_x, at_y))
-        off = _wrapped(math.atan2(y - at_y, x - at_x) - heading)
+        off = wrapped(math.atan2(y - at_y, x - at_x) - heading)
         # Near the point its direction means little, and turning to it would only swing the body.
         spin = _bounded(off / duration, turn) if way > speed * duration else 0.0
         pace = min(speed, way / duration) if spin == 0 or abs(off) < MAX_DIRECTION_ERROR else 0.0
@@ -204,8 +205,3 @@ class MotionCommands:
 
 def _bounded(value: float, bound: float) -> float:
     return max(-bound, min(bound, value))
-
-
-def _wrapped(angle: float) -> float:
-    """Returns the same direction in -pi to pi [rad]."""
-    return math.remainder(angle, 2 * math.pi)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
 from actr3d.world.command_registry import checked_angle, number
-from actr3d.world.frames import heading_in, turn_to
+from actr3d.world.frames import heading_in, turn_to, wrapped
 from actr3d.world.physics import Physics
 
 MAX_PENETRATION = 0.01
@@ -82,14 +82,15 @@ class Objects:
         return (*self._bodies, *self._obstacles, *self._loose)
 
     def pose(self, name: str) -> Placement:
-        """Returns where an object is.
+        """Returns where an object is, its heading in -pi to pi.
 
         Raises:
             WorldError: If there is no such object.
         """
         number, data = self._number(name, self.names, "move"), self._physics.mj_data
         if name in self._bodies and self._bodies[name].base.planar:
-            return self._bodies[name].base.place
+            x, y, heading = self._bodies[name].base.place
+            return x, y, wrapped(heading)
         if name in self._obstacles:
             mocap = int(self._physics.mj_model.body_mocapid[number])
             (x, y, _), turned = data.mocap_pos[mocap].tolist(), data.mocap_quat[mocap]

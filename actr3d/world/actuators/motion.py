@@ -182,10 +182,14 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
     Raises:
         WorldError: If a value is not a number, or out of bounds.
     """
+    before = body.base.heading if body.base.planar else 0.0
     body.base.put(*place("teleport", x, y, heading))
+    if TURN in body.motion.targets:  # the rest of a turn stays the same
+        target, speed = body.motion.targets[TURN]
+        body.motion.targets[TURN] = (target + body.base.heading - before, speed)
     body.hold.stand()
     body.physics.changed()
-    body.physics.refresh()
+    body.physics.refresh_positions()
     for hand in body.hands.values():
         hand.carry()
     body.physics.changed()
@@ -213,7 +217,7 @@ def grasp(body: Body, object: str, hand: str = "right") -> None:
     """
     holds = body.hands[checked_name(hand, body.hands, body.name, "hand")]
     number = body.physics.loose(object)
-    body.physics.refresh()
+    body.physics.refresh_positions()
     if holds.held is None and holds.reaches(number):
         holds.grasp(number)
         body.physics.changed()
