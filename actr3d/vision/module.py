@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 
 from actr3d.actr.explain.module_reasons import outcome_of
-from actr3d.actr.kernel.parameters import WithParameters, check_attribute, named_parameters
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_request
 from actr3d.camera import CameraParameters, View
@@ -138,8 +138,6 @@ class Vision(WithParameters, Searching):
                 self._encoding = encoding_of(value)
             elif name in CAMERA:
                 raise ParameterError(f"Vision.{name}: a camera cannot be changed; set it in Vision({name}=...)")
-            elif name[0] != "_" and name not in STATE:
-                check_attribute(type(self), name, value)
         super().__setattr__(name, value)
 
     # -- for observers

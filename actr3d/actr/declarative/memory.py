@@ -21,7 +21,7 @@ from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters, warn_of_misspelling
+from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.actr.kernel.tree import path_of
@@ -109,11 +109,9 @@ class Memory(WithParameters, Model):
             if not isinstance(value, ChunkStore):
                 value = ChunkStore(value)  # a modeller's own list of chunks
             self._own_chunks(value)
-        elif key in ("latency", "maximum_time"):
+        super().__setattr__(key, value)
+        if key in ("latency", "maximum_time"):
             self.__dict__[f"_{key}_given"] = True
-        elif key not in self.__dict__:
-            warn_of_misspelling(self, key)
-        Model.__setattr__(self, key, value)
 
     # -- chunks
 
