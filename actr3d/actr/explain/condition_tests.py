@@ -8,6 +8,7 @@ from typing import Any
 from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
 from actr3d.actr.explain.state import AgentState, Fact, is_unknown
+from actr3d.actr.kernel.noise import total
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import system_of
 from actr3d.actr.reasons import ConditionReason, ProductionReason
@@ -200,7 +201,7 @@ def why(production: Production, state: AgentState) -> ProductionReason:
         source=tests.source,
         bindings=tests.bindings,
         conditions=tests.conditions,
-        utility=sum(known) if len(known) == len(parts) else None,
+        utility=total(known) if len(known) == len(parts) else None,
         parts=parts,
         selected=choice is not None and choice.chosen == production.name,
         verdict=None if choice is None else choice.verdict(production.name),

@@ -30,9 +30,8 @@ def logistic_noise(numbers: Any, scale: float) -> float:
     return scale * math.log(1.0 / x - 1.0)
 
 
-def total(parts: Iterable[float]) -> float:
+def total(parts: Iterable[float], start: float = 0) -> float:
     """Adds numbers one by one; `sum` rounds differently from Python 3.12 on, and a model must give the same numbers everywhere."""
-    result: float = 0
     for part in parts:
-        result += part
-    return result
+        start += part
+    return start
