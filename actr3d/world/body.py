@@ -182,7 +182,7 @@ class Body:
         return tuple(self._sensors)
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
-        """Gives a command. It takes effect immediately, and lasts until another command of its kind replaces it.
+        """Carries out a command. It takes effect immediately, and lasts until another command of its kind replaces it.
 
         Args:
             word: Its name, one of `actuators`; see the functions in `actr3d.world.actuators`.
@@ -375,7 +375,7 @@ class Body:
 
     @contextmanager
     def _posed(self, positions: Mapping[str, float]) -> Generator[None]:
-        """Has joints at other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
+        """Sets joints to other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
         if self.contacts.held():
             raise WorldError(f"{self.name}: its size in another posture is not known while it holds an object")
         names, added = self.hold.added_by_gait

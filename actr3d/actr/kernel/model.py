@@ -94,7 +94,7 @@ class Model(TreeNode):
         return self._converted
 
     def _convert(self, parent: Model | None = None) -> None:
-        """Gives the model the tree's clock, its own copies of its class's attributes, and its methods."""
+        """Sets the tree's clock for the model, its own copies of its class's attributes, and its methods."""
         own = self.__dict__
         own["_converted"] = True
         own["changes"] = Trigger("changes")

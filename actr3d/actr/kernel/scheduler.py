@@ -232,7 +232,7 @@ class Scheduler:
         return self._named.setdefault(name, Trigger(name))
 
     def take_over(self, other: Scheduler) -> None:
-        """Takes over everything from another scheduler: its events, its waiting events by name, and the calls added by other threads."""
+        """Moves everything of another scheduler here: its events, its waiting events by name, and the calls added by other threads."""
         while other.queue.heap:
             time, priority, event = other.queue.take()
             if time < self.now_us:

@@ -98,7 +98,7 @@ class Embodiment:
         self.tick = tick
 
     def join(self, agent: Model) -> None:
-        """Gives an agent, and all ports below it, this body."""
+        """Connects an agent, and all ports below it, to this body."""
         agent.__dict__["_embodiment"] = self
 
 
