@@ -177,10 +177,8 @@ class Vision(WithParameters, Searching):
         if not isinstance(bottom_up, bool):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
             raise VisionError(f"vision '{self._path}': bottom_up: must be True or False (got {bottom_up!r})")
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            waits = {"waits": self._top_down is not None} if bottom_up else {}
-            self._trace_request("request", pattern=pattern, asked=query.asked, bottom_up=bottom_up, **waits)
+        waits = {"waits": self._top_down is not None} if bottom_up else {}
+        self._trace_request("request", pattern=pattern, asked=query.asked, bottom_up=bottom_up, **waits)
         if bottom_up:
             return self._ask_bottom_up(query)
         if self._top_down is not None:
@@ -380,9 +378,7 @@ class Vision(WithParameters, Searching):
             self._buffer.set(slots)
         data = {"bottom_up": search.bottom_up, "failed": slots is None, **({"held": True} if held else {})}
         search.outcome = outcome_of(data)
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "sight", data if slots is None else {**data, "chunk": slots})
+        self.emit("sight", **data, **({} if slots is None else {"chunk": slots}))
 
     def _kinds(self) -> dict[str, tuple[str, ...]]:
         return {name: slot_names(one.finds) for name, one in self._detectors.items()}

@@ -257,9 +257,7 @@ class Memory(WithParameters, Model):
         self.error = True
         self._buffer.clear()
         self.busy = False
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": True})
+        self.emit("retrieval", failed=True)
 
     @hook
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
@@ -292,8 +290,7 @@ class Memory(WithParameters, Model):
             time = min(self.latency * math.exp(-activation), self.maximum_time, LONGEST) if self.latency else 0.0
         except OverflowError:
             time = min(self.maximum_time, LONGEST)
-        profile = self._profile
-        return round(time * 1000) / 1000 if profile is not None and profile.whole_milliseconds else time
+        return round(time * 1000) / 1000 if self.effective_profile.whole_milliseconds else time
 
     def _time_of_failure(self) -> float:
         """Returns the time until a request fails [s]."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from actr3d.actr.chunks.chunk import as_text
-from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
+from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, by_variable, slot_named
 from actr3d.actr.explain.state import AgentState, Fact, is_unknown
 from actr3d.actr.kernel.noise import total
 from actr3d.actr.procedural.production import Production
@@ -93,7 +93,7 @@ class ConditionTests:
                 return self._unknown(_text(condition), "empty", fact.source)
             self._fact = "empty" if fact.value else "not empty"
             return None if fact.value else Failure(condition=_text(condition), expected="empty", found=self._fact)
-        if isinstance(key, str) and key[:1] == "?":
+        if by_variable(key):
             if key[1:] in self._open:
                 return self._unknown(_text(condition), f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
             if key[1:] not in self._bound:

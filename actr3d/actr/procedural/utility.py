@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, cast
 
 from actr3d.actr.kernel.hooks import hook
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.tree import path_of
@@ -280,7 +280,7 @@ class PMNew(RewardLearning):
     def reward(self, value: float) -> None:
         """Moves the utility of each production since the latest reward towards the reward minus the time since its choice."""
         now = self.now()
-        whole = self._profile is not None and self._profile.total_utility
+        whole = profile_of(self).total_utility
         for prod, chosen in self.history:
             present = prod.util + prod.base_utility if whole else prod.util
             prod.util += self.alpha * (value - (now - chosen) - present)
