@@ -434,10 +434,9 @@ class Body:
         return self._short(model.geom(geom).name) or self.part_name(int(model.geom_bodyid[geom]))
 
     def _touch_geoms(self) -> NDArray[np.intp]:
-        model = self.physics.mj_model
         if self.anatomy.skin is not None:
             return np.array([self._id("geom", name) for name in self.anatomy.skin], dtype=np.intp)
-        return self.geoms[(model.geom_contype[self.geoms] | model.geom_conaffinity[self.geoms]) != 0]
+        return self.geoms[self.physics.solid[self.geoms]]
 
     def _joints(self) -> list[Joint]:
         model = self.physics.mj_model

@@ -70,11 +70,7 @@ class Objects:
         names = {int(number): str(model.body(int(number)).name) for number in np.flatnonzero(model.body_parentid == 0)[1:]}
         own = {body.root for body in bodies.values()}
         self._obstacles = {name: number for number, name in names.items() if model.body_mocapid[number] >= 0 and name not in excluded}
-        self._loose = {name: number for number, name in names.items() if number not in own and self._is_free(number)}
-
-    def _is_free(self, body: int) -> bool:
-        model = self._physics.mj_model
-        return int(model.body_jntnum[body]) == 1 and int(model.jnt_type[model.body_jntadr[body]]) == 0
+        self._loose = {name: number for number, name in names.items() if number in physics.free_joints and number not in own}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -95,7 +91,7 @@ class Objects:
             mocap = int(self._physics.mj_model.body_mocapid[number])
             (x, y, _), turned = data.mocap_pos[mocap].tolist(), data.mocap_quat[mocap]
         else:
-            at = int(self._physics.mj_model.jnt_qposadr[self._physics.mj_model.body_jntadr[number]])
+            at, _ = self._physics.free_joints[number]
             (x, y, _), turned = data.qpos[at : at + 3].tolist(), data.qpos[at + 3 : at + 7]
         return x, y, heading_in(turned.tolist())
 
@@ -120,12 +116,7 @@ class Objects:
             if heading is not None:
                 turn_to(physics.mj_data.mocap_quat[mocap], heading)
         else:
-            joint = int(physics.mj_model.body_jntadr[number])
-            q, v = int(physics.mj_model.jnt_qposadr[joint]), int(physics.mj_model.jnt_dofadr[joint])
-            physics.mj_data.qpos[q : q + 2] = (x, y)
-            physics.mj_data.qvel[v : v + 6] = 0
-            if heading is not None:
-                turn_to(physics.mj_data.qpos[q + 3 : q + 7], heading)
+            physics.put_loose(number, x, y, heading)
         physics.changed()
         others = too_deep(depths, self.depths(moved))
         if others:

@@ -11,6 +11,7 @@ from mujoco import MjData, MjModel, mjtState
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.frames import turn_to
 from actr3d.world.scene import Scene
 
 INTEGRATION = mjtState.mjSTATE_INTEGRATION
@@ -54,6 +55,9 @@ class Physics:
         """By geom: the name of the object that it belongs to; a geom of the world itself, or of a body without a name, has its own name."""
         self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
         """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
+        model, free = self.mj_model, np.flatnonzero(self.mj_model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)).tolist()
+        self.free_joints = {int(model.jnt_bodyid[n]): (int(model.jnt_qposadr[n]), int(model.jnt_dofadr[n])) for n in free}
+        """By MuJoCo body with a free joint: where its pose begins in `qpos`, and its speed in `qvel`."""
         self.grasped: dict[int, int] = {}
         """By weld of a hand: the MuJoCo body that the hand holds."""
         self.pushes: tuple[tuple[int, float, float], ...] = ()
@@ -159,19 +163,29 @@ class Physics:
 
     # -- objects
 
+    @property
+    def solid(self) -> NDArray[np.bool_]:
+        """By geom (ngeom,): whether it has contacts."""
+        return (self.mj_model.geom_contype | self.mj_model.geom_conaffinity) != 0
+
     def loose(self, name: str) -> int:
         """Returns the MuJoCo body of a loose object.
 
         Raises:
             WorldError: If there is no such object, or it is fixed.
         """
-        model = self.mj_model
-        free = {
-            str(model.body(int(model.jnt_bodyid[n])).name): int(model.jnt_bodyid[n]) for n in range(model.njnt) if model.jnt_type[n] == 0
-        }
+        free = {str(self.mj_model.body(body).name): body for body in self.free_joints}
         if str(name) not in free:
             raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
         return free[str(name)]
+
+    def put_loose(self, body: int, x: float, y: float, heading: float | None) -> None:
+        """Puts a MuJoCo body with a free joint at (x, y) [m], with a heading [rad] or its present one, at rest."""
+        q, v = self.free_joints[body]
+        self.mj_data.qpos[q : q + 2] = (x, y)
+        self.mj_data.qvel[v : v + 6] = 0
+        if heading is not None:
+            turn_to(self.mj_data.qpos[q + 3 : q + 7], heading)
 
     def other_side(self, contact: int, side: int) -> str:
         """Returns the name of the object on one side (0 or 1) of a contact."""

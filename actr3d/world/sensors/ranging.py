@@ -91,10 +91,8 @@ def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
     """Returns pairs of own and other geoms, the nearest first: (lower bound of their distance, own, other)."""
     model, data = body.physics.mj_model, body.physics.mj_data
     mine = body.touch_geoms
-    solid = (model.geom_contype | model.geom_conaffinity) != 0
     ground = (model.geom_type == int(mjtGeom.mjGEOM_PLANE)) | (model.geom_type == int(mjtGeom.mjGEOM_HFIELD))
-    solid &= ~ground & ~body.contacts.own_geoms()
-    others = np.flatnonzero(solid)
+    others = np.flatnonzero(body.physics.solid & ~ground & ~body.contacts.own_geoms())
     between = np.linalg.norm(data.geom_xpos[mine][:, None] - data.geom_xpos[others][None], axis=2)
     bounds = between - model.geom_rbound[mine][:, None] - model.geom_rbound[others][None]
     near = np.argwhere(bounds < reach)
