@@ -24,7 +24,7 @@ from actr3d.vision.request_parser import Query, read_request
 from actr3d.vision.salience import Rule
 from actr3d.vision.search import Search
 from actr3d.vision.validation import CAMERA, FromZero, check_camera, encoding_of, saliences_of
-from actr3d.world.command_registry import number
+from actr3d.world.command_registry import checked_number
 
 BITS = 64
 """Bits of the seed of a view's noise."""
@@ -205,7 +205,7 @@ class Vision(WithParameters, Searching):
             WorldError: If one of them is not a number.
             SimulationError: If the agent has no body.
         """
-        angles = (number(value, f"vision '{self._path}': gaze: {name}", -360, 360) for name, value in (("left", left), ("up", up)))
+        angles = (checked_number(value, f"vision '{self._path}': gaze: {name}", -360, 360) for name, value in (("left", left), ("up", up)))
         self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:

@@ -33,13 +33,13 @@ class Base:
         """Heading of a planar base when its heading joint is at 0 [rad]."""
 
     @property
-    def place(self) -> tuple[float, float, float]:
+    def pose(self) -> tuple[float, float, float]:
         """Of a planar base: (x, y, heading) in the world's frame [m] [m] [rad], the heading not wrapped."""
         x, y, heading = self._qpos[self.q : self.q + 3].tolist()
         return (self._at[0] + x, self._at[1] + y, self.faces + heading)
 
-    @place.setter
-    def place(self, value: tuple[float, float, float]) -> None:
+    @pose.setter
+    def pose(self, value: tuple[float, float, float]) -> None:
         x, y, heading = value
         self._qpos[self.q : self.q + 3] = (x - self._at[0], y - self._at[1], heading - self.faces)
 
@@ -68,7 +68,7 @@ class Base:
         """
         if self.planar:
             speed = self.speed
-            self.place = (x, y, self.place[2] if heading is None else heading)
+            self.pose = (x, y, self.pose[2] if heading is None else heading)
             self.speed = speed
         else:
             self._physics.put_loose(self._root, x, y, heading)

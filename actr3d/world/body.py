@@ -18,7 +18,7 @@ from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
 from actr3d.world.bounding_box import BoundingBox, Bounds
-from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, number
+from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, checked_number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
 from actr3d.world.gait import OWN, STANCE, GaitCycle, standing
@@ -150,7 +150,8 @@ class Body:
         self._actuators = ACTUATORS.of(self)
         self._sensors = SENSORS.of(self)
         self._noise: dict[str, StandardDeviation] = {
-            name: dict(sd) if isinstance(sd, tuple) else number(sd, f"{self.name}: noise of {name}", 0) for name, sd in self.anatomy.noise
+            name: dict(sd) if isinstance(sd, tuple) else checked_number(sd, f"{self.name}: noise of {name}", 0)
+            for name, sd in self.anatomy.noise
         }
         for name, sd in self._noise.items():
             self._check_noise(checked_name(name, self._sensors, self.name, "sensor"), sd)

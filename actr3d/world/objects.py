@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
-from actr3d.world.command_registry import checked_angle, number
+from actr3d.world.command_registry import checked_angle, checked_number
 from actr3d.world.frames import heading_in, turn_to, wrapped
 from actr3d.world.physics import Physics
 
@@ -85,7 +85,7 @@ class Objects:
         """
         number, data = self._number(name, self.names, "move"), self._physics.mj_data
         if name in self._bodies and self._bodies[name].base.planar:
-            x, y, heading = self._bodies[name].base.place
+            x, y, heading = self._bodies[name].base.pose
             return x, y, wrapped(heading)
         if name in self._obstacles:
             mocap = int(self._physics.mj_model.body_mocapid[number])
@@ -103,7 +103,7 @@ class Objects:
                 would be inside another object. Then nothing is moved.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
-        x, y, heading = place("move", x, y, heading)
+        x, y, heading = checked_pose("move", x, y, heading)
         moved = {number, *self._held(name)}
         self._check_free(name, moved)
         before, depths = physics.integration_state(), self.depths(moved)
@@ -249,8 +249,8 @@ class Pushes:
             WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
         pushed = self._objects.pushed(name)
-        x, y = (number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
-        time = number(time, "push: time", 1e-6, LONGEST)
+        x, y = (checked_number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
+        time = checked_number(time, "push: time", 1e-6, LONGEST)
         self.restore((*self._pushes, (pushed, x, y, max(1, round(time / self._physics.timestep)))))
 
     def begin(self, steps: int) -> None:
@@ -283,7 +283,7 @@ class Pushes:
         self._physics.pushes = tuple((body, x, y) for body, x, y, _ in state)
 
 
-def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
+def checked_pose(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
     """Returns a place (x, y) [m] and a heading [rad], if any, as numbers within bounds.
 
     Args:
@@ -295,7 +295,7 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
     Raises:
         WorldError: If a value is not a number, or out of bounds.
     """
-    x, y = number(x, f"{what}: x", -FARTHEST, FARTHEST), number(y, f"{what}: y", -FARTHEST, FARTHEST)
+    x, y = checked_number(x, f"{what}: x", -FARTHEST, FARTHEST), checked_number(y, f"{what}: y", -FARTHEST, FARTHEST)
     return x, y, None if heading is None else checked_angle(heading, f"{what}: heading")
 
 

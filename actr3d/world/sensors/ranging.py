@@ -12,7 +12,7 @@ from mujoco import mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.world.body import Body, sensor
-from actr3d.world.command_registry import checked_angle, number, whole
+from actr3d.world.command_registry import checked_angle, checked_number, checked_whole
 
 BEYOND = 1e-6
 """Distance behind a hit on the body itself at which a ray continues [m]."""
@@ -45,7 +45,7 @@ def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: f
         WorldError: If a value is not a number, an angle is more than a full turn, the reach is negative, or there is no such frame.
     """
     angle, elevation = checked_angle(angle, "rangefinder: angle"), checked_angle(elevation, "rangefinder: elevation")
-    return _cast(body, at, np.array([angle]), elevation, number(reach, "rangefinder: reach", 0))[0]
+    return _cast(body, at, np.array([angle]), elevation, checked_number(reach, "rangefinder: reach", 0))[0]
 
 
 @sensor
@@ -59,10 +59,10 @@ def laser(
     Raises:
         WorldError: If `rays` is not a whole number in 1 to 100,000, `fov` not in 0 to 2 pi, or as for the rangefinder.
     """
-    count = whole(rays, "laser: rays", 1, 100_000)
-    half = number(fov, "laser: fov", 0, 2 * math.pi) / 2
+    count = checked_whole(rays, "laser: rays", 1, 100_000)
+    half = checked_number(fov, "laser: fov", 0, 2 * math.pi) / 2
     angles = np.linspace(half, -half, count) if count > 1 else np.zeros(1)
-    return _cast(body, at, angles, checked_angle(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
+    return _cast(body, at, angles, checked_angle(elevation, "laser: elevation"), checked_number(reach, "laser: reach", 0))
 
 
 @sensor
@@ -72,7 +72,7 @@ def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
     Raises:
         WorldError: If the reach is not a number from 0 on.
     """
-    reach = number(reach, "proximity: reach", 0)
+    reach = checked_number(reach, "proximity: reach", 0)
     body.physics.refresh_positions()
     model, data = body.physics.mj_model, body.physics.mj_data
     nearest, found = reach, None

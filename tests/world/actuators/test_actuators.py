@@ -82,13 +82,13 @@ def test_a_turn_while_walking_has_the_commanded_angle(by: float, speed: float) -
     ticks(world, math.ceil(abs(by) / speed * 100) - 1)
     assert body.motion
     ticks(world, 1)
-    assert body.base.place[2] == near(by, abs=1e-9)
+    assert body.base.pose[2] == near(by, abs=1e-9)
     assert not body.motion
     assert body.base.speed == near((0.5, 0, 0), abs=1e-3)
     body.set("turn", 3.0, 1.0)
     body.set("heading", 0.0)
     ticks(world, 300)
-    assert math.remainder(body.base.place[2], 2 * math.pi) == near(0, abs=1e-6)
+    assert math.remainder(body.base.pose[2], 2 * math.pi) == near(0, abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -138,7 +138,7 @@ def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
     world, body = world_with_walker(heading=3.0)
     body.set("heading", -3.0, 1.0)
     ticks(world, 10)
-    assert body.base.place[2] == near(3.1, abs=1e-3)
+    assert body.base.pose[2] == near(3.1, abs=1e-3)
     ticks(world, 30)
     assert body.get("pose").heading == near(-3.0, abs=1e-9)
     assert not body.motion
