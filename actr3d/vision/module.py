@@ -16,7 +16,7 @@ from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
-from actr3d.vision.encoding import PROGRAMMING, Emma, saccade_time
+from actr3d.vision.encoding import PROGRAMMING, Emma
 from actr3d.vision.feature import off_sight, slot_names
 from actr3d.vision.feature_cache import FeatureCache
 from actr3d.vision.noise import blurred
@@ -24,7 +24,9 @@ from actr3d.vision.request_parser import Query, read_request
 from actr3d.vision.salience import Rule
 from actr3d.vision.search import Search
 from actr3d.vision.validation import CAMERA, FromZero, check_camera, encoding_of, saliences_of
+from actr3d.world.actuators.motion import saccade_time
 from actr3d.world.command_registry import checked_number
+from actr3d.world.frames import wrapped
 
 BITS = 64
 """Bits of the seed of a view's noise."""
@@ -320,7 +322,7 @@ class Vision(WithParameters, Searching):
         left, up, eccentricity = off_sight(view.axes, feature)
         landing, direction, elevation = self._aim
         if sch.now_us < landing:  # the eye will look there before it turns again
-            left, up = math.remainder(feature.direction - direction, 2 * math.pi), feature.elevation - elevation
+            left, up = wrapped(feature.direction - direction), feature.elevation - elevation
         begin = max(search.due, sch.now_us)
         encoding = self._encoding
         time, start = encoding.course(eccentricity) if isinstance(encoding, Emma) else (encoding, 0.0)

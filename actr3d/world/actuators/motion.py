@@ -285,13 +285,18 @@ def _within(joint: Joint, angle: float) -> float:
     return max(joint.lower, min(joint.upper, angle))
 
 
+def saccade_time(angle: float) -> float:
+    """Returns the duration of an eye movement over an angle [rad], in seconds."""
+    return SACCADE + SACCADE_PER_RAD * abs(angle)
+
+
 def _look(body: Body, left: float, up: float, speed: float | None = None) -> None:
     """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s], or in the time of a saccade."""
     yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
     to_yaw, to_pitch = _within(yaw, left), _within(pitch, -up)
     turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))
     farthest = max(turns)
-    time = SACCADE + SACCADE_PER_RAD * farthest if speed is None else farthest / checked_number(speed, "gaze: speed", 1e-6)
+    time = saccade_time(farthest) if speed is None else farthest / checked_number(speed, "gaze: speed", 1e-6)
     for name, angle, turn in zip(("eye_yaw", "eye_pitch"), (to_yaw, to_pitch), turns, strict=True):
         body.motion.targets[name] = (angle, max(turn / time, 1e-6) if time > 0 else MODERATE)
 
