@@ -104,7 +104,6 @@ class Motor(WithParameters, Port):
         preparation: FromZero = 0.0,
         initiation: FromZero = 0.0,
     ) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self._memory = memory
         self._limbs: Limbs | None = None

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 
 from actr3d.actr.explain.module_reasons import outcome_of
+from actr3d.actr.kernel.noise import duration
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_request
@@ -227,11 +228,9 @@ class Vision(WithParameters, Searching):
 
     def _begin(self, search: Search, delay: float) -> Search:
         """Begins a search, with a request to the body for a view at the end of the present tick."""
-        if self.delay_sd is not None:
-            delay = max(0.0, self.random.gauss(delay, self.delay_sd))
         search.clear()
         search.begun = self.sch.now_us
-        search.due = self.sch.after(delay)
+        search.due = self.sch.after(duration(self.random, delay, self.delay_sd))
         self._ask_for_view(search)
         return search
 

@@ -17,13 +17,10 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import AssetFolder, Files, digest, resolved
-from actr3d.world.mesh import INVISIBLE, Quaternion, orientation
+from actr3d.world.mesh import HIDDEN_GROUP, INVISIBLE, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
 from actr3d.world.scene import on_one_line
 from actr3d.world.scene_objects import Heading, Name
-
-HIDDEN_GROUP = 3
-"""First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
 
 GEOM_FIELDS = (
     *("type", "pos", "quat", "fromto", "size", "mass", "density", "typeinertia", "meshname", "hfieldname", "fitscale"),

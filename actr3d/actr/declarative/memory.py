@@ -66,7 +66,6 @@ class Memory(WithParameters, Model):
         finst_time: NotNegative = 3.0,
         profile: str | Profile | None = None,
     ) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self._profile = None if profile is None else find_profile(profile, "Memory.profile")
         self.dm: ChunkStore = ChunkStore()

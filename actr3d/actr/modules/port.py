@@ -219,7 +219,6 @@ class BodyPort(Port):
 
     @named_parameters
     def __init__(self, buffer: Any = None) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self._outstanding = 0
         self.busy = False

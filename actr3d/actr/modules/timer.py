@@ -27,7 +27,6 @@ class Timer(WithParameters, Model):
 
     @named_parameters
     def __init__(self, startpulse: Positive = 0.011, a: Positive = 1.1, b: NotNegative = 0.015) -> None:
-        Model.__init__(self)
         self.startpulse = startpulse
         self.a = a
         self.b = b
