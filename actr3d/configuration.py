@@ -102,7 +102,7 @@ def checked(value: Any, declared: Any, where: str) -> Any:
         endless = isinstance(value, float) and math.isinf(value) and any(isinstance(bound, Infinite) for bound in bounds)
         found = value if endless else checked(value, inner, where)
         for bound in bounds:
-            hold(bound, found, where)
+            check_bound(bound, found, where)
         return found
     if origin in (Union, UnionType):
         return _one_of(value, get_args(declared), where)
@@ -172,7 +172,7 @@ def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
     return tuple(checked(item, declared, f"{where}[{n}]") for n, (item, declared) in enumerate(zip(values, items, strict=True)))
 
 
-def hold(bound: object, value: Any, where: str) -> None:
+def check_bound(bound: object, value: Any, where: str) -> None:
     """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored.
 
     Raises:

@@ -21,18 +21,18 @@ OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_
 BLAS = "scipy.linalg.cython_blas"
 """The module of SciPy for which numba looks."""
 
-_inner: set[FunctionType] = set()
-"""The functions that are marked with `compiled`."""
-_kept: dict[FunctionType, Any] = {}
-"""The functions that are compiled on their own, as `kept` returns them."""
+_marked: set[FunctionType] = set()
+"""The functions that are marked with `inner_compiled`."""
+_compiled_alone: dict[FunctionType, Any] = {}
+"""The functions that are compiled on their own, as `compile_cached` returns them."""
 
 
 @cache
 def _numba() -> Any:
     """Returns numba, which takes a third of a second to load.
 
-    Before it compiles anything, it loads SciPy's linear algebra, which takes as long again, to know whether it is there. Here it does not
-    find it: no function of the library needs it, and a function that does, such as one of a model, still loads it when it is compiled.
+    Before it compiles anything, numba looks for SciPy's linear algebra, and to load that takes as long again. Here numba does not find it:
+    no function of the library needs it. A function that does, such as one of a model, still loads it when it is compiled.
     """
     if BLAS not in sys.modules:
         sys.modules[BLAS] = cast("Any", None)
@@ -47,9 +47,9 @@ def _njit(**options: Any) -> Any:
     return _numba().njit(**options)
 
 
-def compiled(function: Callable[P, R]) -> Callable[P, R]:
+def inner_compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Marks a function that only compiled functions call: it is compiled with the first of these, as numba takes long to load."""
-    _inner.add(cast("FunctionType", function))
+    _marked.add(cast("FunctionType", function))
     return function
 
 
@@ -60,17 +60,17 @@ def _compiled(function: FunctionType) -> Any:
 
 
 def _linked(function: FunctionType) -> FunctionType:
-    """Returns a function that calls the compiled forms of the marked and of the kept functions."""
+    """Returns a function that calls the compiled forms of the marked functions, and of those that are compiled on their own."""
     there = {name: function.__globals__.get(name) for name in function.__code__.co_names}
     functions = {name: value for name, value in there.items() if isinstance(value, FunctionType)}
-    inner = {name: _compiled(value) for name, value in functions.items() if value in _inner}
-    inner |= {name: _kept[value] for name, value in functions.items() if value in _kept}
+    inner = {name: _compiled(value) for name, value in functions.items() if value in _marked}
+    inner |= {name: _compiled_alone[value] for name, value in functions.items() if value in _compiled_alone}
     linked = FunctionType(function.__code__, function.__globals__ | inner, function.__name__, function.__defaults__, function.__closure__)
     linked.__qualname__ = function.__qualname__
     return linked
 
 
-def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
+def compile_cached(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
     """Returns the function compiled, and cached on disk for the next process if a cache folder is writable.
 
     Numba's cache checks only the file of the function itself, cannot even be read where a module of the old code is gone, and is
@@ -87,7 +87,7 @@ def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
         made = _njit(cache=True, **OPTIONS)(linked)
     except RuntimeError:  # no writable cache folder
         made = _njit(**OPTIONS)(linked)
-    _kept[cast("FunctionType", function)] = made
+    _compiled_alone[cast("FunctionType", function)] = made
     return made
 
 

@@ -89,11 +89,11 @@ def walk(parameters: dict[str, Any], seed: int, *, longest: float = LONGEST) -> 
         )
         simulation.run()
     walker = simulation.agents["walker"]
-    ways = {name: (-1 if name == "other" else 1) * (body.base.place[0] - model().DISTANCE) for name, body in bodies.items()}
+    ways = {name: (-1 if name == "other" else 1) * (body.base.pose[0] - model().DISTANCE) for name, body in bodies.items()}
     return Walk(
         seed=seed,
         beyond=tuple(name for name, way in ways.items() if way > 0),
-        side="left" if bodies["walker"].base.place[1] > 0 else "right",
+        side="left" if bodies["walker"].base.pose[1] > 0 else "right",
         touched=tuple(sorted(touched)),
         waits=told.getvalue().count("waits"),
         turn=walker.chosen,

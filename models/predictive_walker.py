@@ -3,8 +3,8 @@
 No ratio and no margin is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
 passages how much wider than its body the doorway looked, in widths of its own shoulders, how fast it walked, and what came of it: nothing, a
 brush, or a hit, and how hard. Memories hold both widths and the turn, too, but only the room, their difference, and the speed are compared.
-That room is compared in units of the body is assumed; almost from this alone it follows that large and small people turn alike at the same
-ratio of doorway and shoulders (`units = "metres"` shows what happens otherwise).
+We assume that room is compared in shoulder widths. Almost from this assumption alone it follows that large and small people turn alike at
+the same ratio of doorway and shoulders (`units = "metres"` shows what happens otherwise).
 
 For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
 what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
+from actr3d.actr.chunks.pattern import by_variable
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
 from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of
@@ -27,7 +28,7 @@ def check_patterns(motor: Model) -> None:
         for production in of_motor:
             for condition in production.conditions:
                 key = condition.key
-                if not isinstance(key, str) or key[:1] == "?" or condition.op in ("empty", "call"):
+                if not isinstance(key, str) or by_variable(key) or condition.op in ("empty", "call"):
                     continue
                 if production.context[condition.name or "self"] is motor and key.partition(".")[0] not in known:
                     what = f"'{condition.name}' has no attribute '{key}'{did_you_mean(key, known)}"

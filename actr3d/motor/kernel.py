@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.jit import kept
+from actr3d.jit import compile_cached
 
 Row = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ def note_felt() -> Callable[[Row, Row, NDArray[np.intp]], int]:
 
     A value between two others with the same place on the grid has that place too, and is no new extreme.
     """
-    return kept(_note_felt, Path(__file__))
+    return compile_cached(_note_felt, Path(__file__))
 
 
 def _note_felt(values: Row, rows: Any, new: NDArray[np.intp]) -> int:

@@ -23,7 +23,7 @@ from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Li
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import SIZES, BodySchema
 from actr3d.world.actuators.motion import MOST_TURNS
-from actr3d.world.command_registry import checked_name, number
+from actr3d.world.command_registry import checked_name, checked_number
 from actr3d.world.sensors.anatomy import BodyPlan
 from actr3d.world.sensors.proprioception import Proprioception, SizeInPosture
 
@@ -104,7 +104,6 @@ class Motor(WithParameters, Port):
         preparation: FromZero = 0.0,
         initiation: FromZero = 0.0,
     ) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self._memory = memory
         self._limbs: Limbs | None = None
@@ -172,7 +171,7 @@ class Motor(WithParameters, Port):
         Raises:
             WorldError: If the speed is not a number, or the body cannot walk.
         """
-        self._command(partial(self._walk, number(speed, "walk: speed")), "walk", speed=speed)
+        self._command(partial(self._walk, checked_number(speed, "walk: speed")), "walk", speed=speed)
 
     def turn(self, angle: Any = None, speed: Any = None) -> None:
         """Turns the whole body, also while it walks; while it turns without an end, it changes the speed.
@@ -184,8 +183,8 @@ class Motor(WithParameters, Port):
         Raises:
             WorldError: If a value is not a number, or the body cannot walk.
         """
-        by = None if angle is None else radians(number(angle, "turn: angle", -360 * MOST_TURNS, 360 * MOST_TURNS))
-        ends = by is None and speed is not None and number(speed, "turn: speed") == 0
+        by = None if angle is None else radians(checked_number(angle, "turn: angle", -360 * MOST_TURNS, 360 * MOST_TURNS))
+        ends = by is None and speed is not None and checked_number(speed, "turn: speed") == 0
         rate = 0.0 if ends else radians(self._speed("turn", speed, by is not None))
         self._command(partial(self._turn, by, rate), "turn", angle=angle, speed=speed)
 
@@ -261,7 +260,7 @@ class Motor(WithParameters, Port):
             WorldError: If there is no such joint, it has no muscles, or a value is invalid.
         """
         pace = self._speed("rotate", speed, angle is not None)
-        to = None if angle is None else number(angle, "rotate: angle")
+        to = None if angle is None else checked_number(angle, "rotate: angle")
         act = partial(self._rotate, joint, axis, to, pace, speed is None)
         self._command(act, "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
 
@@ -278,7 +277,7 @@ class Motor(WithParameters, Port):
             WorldError: If the body has no such movement, or a value is invalid.
         """
         pace = self._speed(str(movement), speed, angle is not None)
-        to = None if angle is None else number(angle, f"{movement}: angle")
+        to = None if angle is None else checked_number(angle, f"{movement}: angle")
         act = partial(self._move, movement, side, to, pace, speed is None)
         self._command(act, "move", movement=movement, side=side, angle=angle, speed=speed)
 
@@ -398,7 +397,8 @@ class Motor(WithParameters, Port):
             WorldError: If it names no joint of the body, or a value is not a number.
         """
         limbs = self._felt().limbs
-        positions = {joint: number(posture[joint], f"{call}: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
+        given = [joint for joint in limbs.order if joint in posture]
+        positions = {joint: checked_number(posture[joint], f"{call}: {joint}") * limbs.unit[joint] for joint in given}
         if not positions:
             raise WorldError(f"{call}: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
         return positions
@@ -438,7 +438,7 @@ class Motor(WithParameters, Port):
         Raises:
             WorldError: If it is not a number, is 0, or is negative although there is a target angle.
         """
-        given = self.speed if speed is None else number(speed, f"{call}: speed")
+        given = self.speed if speed is None else checked_number(speed, f"{call}: speed")
         if given == 0 or (bounded and given < 0):
             raise WorldError(f"{call}: speed: must {'be > 0 to go to an angle' if bounded else 'not be 0'} (got {speed!r})")
         return given

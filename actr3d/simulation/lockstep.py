@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from actr3d.actr.modules.answers import own_answer
+from actr3d.actr.modules.answers import copied_answer
 from actr3d.actr.modules.port import Request, note_request
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
@@ -150,7 +150,7 @@ class Lockstep:
 
     def _answer(self, questions: Sequence[Request], answers: Sequence[Any]) -> None:
         for request, answer in zip(questions, answers, strict=True):
-            self.agents.take(request, own_answer(answer))
+            self.agents.take(request, copied_answer(answer))
         self._log.answers(self.ticks + 1, questions, answers)
 
     def _expect(self, phase: str, what: str) -> None:

@@ -9,7 +9,7 @@ from typing import Annotated
 from annotated_types import Gt, Lt
 
 from actr3d.configuration import Configuration
-from actr3d.world.actuators.motion import SACCADE, SACCADE_PER_RAD
+from actr3d.world.actuators.motion import saccade_time
 
 PREPARATION = 0.135
 """Duration of the labile stage of an eye movement: until then it can still be cancelled [s]. Source: EMMA (Salvucci 2001)."""
@@ -20,11 +20,6 @@ LONGEST = 1e6
 """Upper bound of encoding [s]: for large angles the equation gives years, and then overflows."""
 LARGEST = 700.0
 """Greatest exponent without an overflow."""
-
-
-def saccade_time(angle: float) -> float:
-    """Returns the duration of an eye movement over an angle [rad], in seconds."""
-    return SACCADE + SACCADE_PER_RAD * abs(angle)
 
 
 @dataclass(frozen=True, kw_only=True)

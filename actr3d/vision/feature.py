@@ -11,13 +11,14 @@ from typing import Any, ClassVar, Self, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.actr.kernel.read_attributes import reads_of_itself
+from actr3d.actr.kernel.read_attributes import reads
 from actr3d.errors import VisionError
 from actr3d.vision.units import LABEL, Metres, MetresPerSecond, Radians, units_of
 from actr3d.weak_cache import weak_cache
+from actr3d.world.frames import wrapped
 
 
-@reads_of_itself("bottom", "height", "top", "width")
+@reads("bottom", "height", "top", "width", of_itself=True)
 @dataclass(frozen=True, kw_only=True)
 class Feature:
     """A found feature; its fields become the slots of a chunk.
@@ -133,7 +134,7 @@ def off_sight(axes: NDArray[np.float64], feature: Feature) -> tuple[float, float
         feature: A feature of the same view.
     """
     sight = axes[2]
-    left = math.remainder(feature.direction - math.atan2(sight[1], sight[0]), 2 * math.pi)
+    left = wrapped(feature.direction - math.atan2(sight[1], sight[0]))
     up = feature.elevation - math.asin(max(-1.0, min(1.0, float(sight[2]))))
     flat = math.cos(feature.elevation)
     way = np.array([flat * math.cos(feature.direction), flat * math.sin(feature.direction), math.sin(feature.elevation)])

@@ -9,14 +9,15 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 
 from actr3d.actr.explain.module_reasons import outcome_of
-from actr3d.actr.kernel.parameters import WithParameters, check_attribute, named_parameters
+from actr3d.actr.kernel.noise import duration
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_request
 from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
-from actr3d.vision.encoding import PROGRAMMING, Emma, saccade_time
+from actr3d.vision.encoding import PROGRAMMING, Emma
 from actr3d.vision.feature import off_sight, slot_names
 from actr3d.vision.feature_cache import FeatureCache
 from actr3d.vision.noise import blurred
@@ -24,7 +25,9 @@ from actr3d.vision.request_parser import Query, read_request
 from actr3d.vision.salience import Rule
 from actr3d.vision.search import Search
 from actr3d.vision.validation import CAMERA, FromZero, check_camera, encoding_of, saliences_of
-from actr3d.world.command_registry import number
+from actr3d.world.actuators.motion import saccade_time
+from actr3d.world.command_registry import checked_number
+from actr3d.world.frames import wrapped
 
 BITS = 64
 """Bits of the seed of a view's noise."""
@@ -138,8 +141,6 @@ class Vision(WithParameters, Searching):
                 self._encoding = encoding_of(value)
             elif name in CAMERA:
                 raise ParameterError(f"Vision.{name}: a camera cannot be changed; set it in Vision({name}=...)")
-            elif name[0] != "_" and name not in STATE:
-                check_attribute(type(self), name, value)
         super().__setattr__(name, value)
 
     # -- for observers
@@ -179,10 +180,8 @@ class Vision(WithParameters, Searching):
         if not isinstance(bottom_up, bool):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
             raise VisionError(f"vision '{self._path}': bottom_up: must be True or False (got {bottom_up!r})")
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            waits = {"waits": self._top_down is not None} if bottom_up else {}
-            self._trace_request("request", pattern=pattern, asked=query.asked, bottom_up=bottom_up, **waits)
+        waits = {"waits": self._top_down is not None} if bottom_up else {}
+        self._trace_request("request", pattern=pattern, asked=query.asked, bottom_up=bottom_up, **waits)
         if bottom_up:
             return self._ask_bottom_up(query)
         if self._top_down is not None:
@@ -209,7 +208,7 @@ class Vision(WithParameters, Searching):
             WorldError: If one of them is not a number.
             SimulationError: If the agent has no body.
         """
-        angles = (number(value, f"vision '{self._path}': gaze: {name}", -360, 360) for name, value in (("left", left), ("up", up)))
+        angles = (checked_number(value, f"vision '{self._path}': gaze: {name}", -360, 360) for name, value in (("left", left), ("up", up)))
         self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:
@@ -229,11 +228,9 @@ class Vision(WithParameters, Searching):
 
     def _begin(self, search: Search, delay: float) -> Search:
         """Begins a search, with a request to the body for a view at the end of the present tick."""
-        if self.delay_sd is not None:
-            delay = max(0.0, self.random.gauss(delay, self.delay_sd))
         search.clear()
         search.begun = self.sch.now_us
-        search.due = self.sch.after(delay)
+        search.due = self.sch.after(duration(self.random, delay, self.delay_sd))
         self._ask_for_view(search)
         return search
 
@@ -324,7 +321,7 @@ class Vision(WithParameters, Searching):
         left, up, eccentricity = off_sight(view.axes, feature)
         landing, direction, elevation = self._aim
         if sch.now_us < landing:  # the eye will look there before it turns again
-            left, up = math.remainder(feature.direction - direction, 2 * math.pi), feature.elevation - elevation
+            left, up = wrapped(feature.direction - direction), feature.elevation - elevation
         begin = max(search.due, sch.now_us)
         encoding = self._encoding
         time, start = encoding.course(eccentricity) if isinstance(encoding, Emma) else (encoding, 0.0)
@@ -382,9 +379,7 @@ class Vision(WithParameters, Searching):
             self._buffer.set(slots)
         data = {"bottom_up": search.bottom_up, "failed": slots is None, **({"held": True} if held else {})}
         search.outcome = outcome_of(data)
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "sight", data if slots is None else {**data, "chunk": slots})
+        self.emit("sight", **data, **({} if slots is None else {"chunk": slots}))
 
     def _kinds(self) -> dict[str, tuple[str, ...]]:
         return {name: slot_names(one.finds) for name, one in self._detectors.items()}

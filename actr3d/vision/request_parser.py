@@ -10,7 +10,7 @@ from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
 from actr3d.actr.chunks.chunk import as_number, as_text, parse_slots, variable_value
-from actr3d.configuration import hold
+from actr3d.configuration import check_bound
 from actr3d.errors import VisionError, alternatives, did_you_mean, followed
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.feature import Feature, slot_names
@@ -191,7 +191,7 @@ class _RequestReader:
         if sign or more or number is None:
             raise VisionError(f"{self._what}: {word} takes one number [{self._detector.unit(word).name}] (got {value!r})")
         for bound in self._detector.bounds(word):
-            hold(bound, number, f"{self._what}: {word}")
+            check_bound(bound, number, f"{self._what}: {word}")
         return number / self._detector.unit(word).factor
 
 

@@ -62,11 +62,11 @@ class ActuatedDofs:
         """Whether there are any of these."""
 
     @property
-    def places(self) -> Row:
+    def positions(self) -> Row:
         """Their positions [m] [rad]."""
         return self._qpos[self.q]
 
-    def place(self, row: int) -> float:
+    def position(self, row: int) -> float:
         """Returns the position in one row [m] [rad]."""
         return float(self._qpos[self.q[row]])
 
@@ -170,12 +170,12 @@ def _in_loop(model: Any, members: NDArray[np.bool_], dofs: NDArray[np.intp]) -> 
         ends = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         kind = model.eq_type[number] == int(mjtEq.mjEQ_CONNECT) and model.eq_objtype[number] == int(mjtObj.mjOBJ_BODY)
         if kind and members[ends[0]] and members[ends[1]]:
-            one, other = (_carriers(model, end) for end in ends)
+            one, other = (_with_carriers(model, end) for end in ends)
             found |= np.isin(model.dof_bodyid[dofs], list(one ^ other))
     return found
 
 
-def _carriers(model: Any, number: int) -> set[int]:
+def _with_carriers(model: Any, number: int) -> set[int]:
     """Returns a MuJoCo body and all that carry it."""
     found = {number}
     while number:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from actr3d.world.frames import turn_to, yaw_in
+from actr3d.world.frames import yaw_in
 from actr3d.world.physics import Physics
 
 
@@ -19,11 +19,12 @@ class Base:
 
     def __init__(self, physics: Physics, root: int, prefix: str) -> None:
         model = physics.mj_model
+        self._physics, self._root = physics, root
         self._qpos, self._qvel = physics.mj_data.qpos, physics.mj_data.qvel
         first, count = int(model.body_jntadr[root]), int(model.body_jntnum[root])
         names = [model.joint(first + n).name for n in range(count)]
         self.planar = names == [f"{prefix}{name}" for name in ("x", "y", "heading")]
-        self.free = count == 1 and int(model.jnt_type[first]) == 0
+        self.free = root in physics.free_joints
         self.joints = frozenset(range(first, first + count)) if self.planar or self.free else frozenset[int]()
         self.q = int(model.jnt_qposadr[first]) if count else 0
         self.v = int(model.jnt_dofadr[first]) if count else 0
@@ -32,13 +33,13 @@ class Base:
         """Heading of a planar base when its heading joint is at 0 [rad]."""
 
     @property
-    def place(self) -> tuple[float, float, float]:
+    def pose(self) -> tuple[float, float, float]:
         """Of a planar base: (x, y, heading) in the world's frame [m] [m] [rad], the heading not wrapped."""
         x, y, heading = self._qpos[self.q : self.q + 3].tolist()
         return (self._at[0] + x, self._at[1] + y, self.faces + heading)
 
-    @place.setter
-    def place(self, value: tuple[float, float, float]) -> None:
+    @pose.setter
+    def pose(self, value: tuple[float, float, float]) -> None:
         x, y, heading = value
         self._qpos[self.q : self.q + 3] = (x - self._at[0], y - self._at[1], heading - self.faces)
 
@@ -67,10 +68,7 @@ class Base:
         """
         if self.planar:
             speed = self.speed
-            self.place = (x, y, self.place[2] if heading is None else heading)
+            self.pose = (x, y, self.pose[2] if heading is None else heading)
             self.speed = speed
-            return
-        self._qpos[self.q : self.q + 2] = (x, y)
-        self._qvel[self.v : self.v + 6] = 0
-        if heading is not None:
-            turn_to(self._qpos[self.q + 3 : self.q + 7], heading)
+        else:
+            self._physics.put_loose(self._root, x, y, heading)

@@ -18,7 +18,7 @@ from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
 from actr3d.world.bounding_box import BoundingBox, Bounds
-from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, number
+from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, checked_number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
 from actr3d.world.gait import OWN, STANCE, GaitCycle, standing
@@ -150,7 +150,8 @@ class Body:
         self._actuators = ACTUATORS.of(self)
         self._sensors = SENSORS.of(self)
         self._noise: dict[str, StandardDeviation] = {
-            name: dict(sd) if isinstance(sd, tuple) else number(sd, f"{self.name}: noise of {name}", 0) for name, sd in self.anatomy.noise
+            name: dict(sd) if isinstance(sd, tuple) else checked_number(sd, f"{self.name}: noise of {name}", 0)
+            for name, sd in self.anatomy.noise
         }
         for name, sd in self._noise.items():
             self._check_noise(checked_name(name, self._sensors, self.name, "sensor"), sd)
@@ -182,7 +183,7 @@ class Body:
         return tuple(self._sensors)
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
-        """Gives a command. It takes effect immediately, and lasts until another command of its kind replaces it.
+        """Carries out a command. It takes effect immediately, and lasts until another command of its kind replaces it.
 
         Args:
             word: Its name, one of `actuators`; see the functions in `actr3d.world.actuators`.
@@ -375,7 +376,7 @@ class Body:
 
     @contextmanager
     def _posed(self, positions: Mapping[str, float]) -> Generator[None]:
-        """Has joints at other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
+        """Sets joints to other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
         if self.contacts.held():
             raise WorldError(f"{self.name}: its size in another posture is not known while it holds an object")
         names, added = self.hold.added_by_gait
@@ -434,10 +435,9 @@ class Body:
         return self._short(model.geom(geom).name) or self.part_name(int(model.geom_bodyid[geom]))
 
     def _touch_geoms(self) -> NDArray[np.intp]:
-        model = self.physics.mj_model
         if self.anatomy.skin is not None:
             return np.array([self._id("geom", name) for name in self.anatomy.skin], dtype=np.intp)
-        return self.geoms[(model.geom_contype[self.geoms] | model.geom_conaffinity[self.geoms]) != 0]
+        return self.geoms[self.physics.solid[self.geoms]]
 
     def _joints(self) -> list[Joint]:
         model = self.physics.mj_model

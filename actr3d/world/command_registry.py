@@ -135,7 +135,7 @@ def _quoted(name: Any) -> str:
     return f"'{name}'" if isinstance(name, str) else repr(name)
 
 
-def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
+def checked_number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
     """Returns a finite number within bounds; accepts text such as "1.5", because patterns bind text.
 
     Raises:
@@ -163,7 +163,7 @@ def checked_angle(value: Any, what: str, turns: int = 1) -> float:
     Raises:
         WorldError: If it is none.
     """
-    given = number(value, what)
+    given = checked_number(value, what)
     if abs(given) > turns * FULL_TURN:
         bound = f"{'<=' if given > 0 else '>='} {math.copysign(turns * FULL_TURN, given):g} rad"
         full = "a full turn" if turns == 1 else f"{turns} full turns"
@@ -172,13 +172,13 @@ def checked_angle(value: Any, what: str, turns: int = 1) -> float:
     return given
 
 
-def whole(value: Any, what: str, least: int, most: int) -> int:
+def checked_whole(value: Any, what: str, least: int, most: int) -> int:
     """Returns an integer within bounds; accepts text such as "3".
 
     Raises:
         WorldError: If it is none.
     """
-    given = number(value, what, least, most)
+    given = checked_number(value, what, least, most)
     if not given.is_integer():
         raise WorldError(f"{what}: must be a whole number (got {value!r})")
     return int(given)

@@ -36,6 +36,11 @@ def turn_to(quaternion: NDArray[np.float64], heading: float) -> None:
     mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
 
 
+def wrapped(angle: float) -> float:
+    """Returns the same direction in -pi to pi [rad]."""
+    return math.remainder(angle, 2 * math.pi)
+
+
 def yaw_quaternion(heading: float) -> tuple[float, float, float, float]:
     """Returns the quaternion (w, x, y, z) of a turn by `heading` [rad] about the vertical."""
     return (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))

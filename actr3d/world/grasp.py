@@ -92,10 +92,9 @@ class Hand:
         """Puts the held object back in the hand, at rest, after the body was moved without physics; positions must be up to date."""
         if self.held is None:
             return
-        model, data = self._physics.mj_model, self._physics.mj_data
+        data = self._physics.mj_data
         position, quaternion = np.array(self.held.pose[:3]), np.array(self.held.pose[3:])
-        joint = int(model.body_jntadr[self.held.object])
-        q, v = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
+        q, v = self._physics.free_joints[self.held.object]
         turned: NDArray[np.float64] = np.zeros(4)
         mujoco.mju_mulQuat(turned, data.xquat[self._segment], quaternion)
         data.qpos[q : q + 3] = data.xpos[self._segment] + data.xmat[self._segment].reshape(3, 3) @ position

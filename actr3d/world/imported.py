@@ -17,13 +17,10 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import AssetFolder, Files, digest, resolved
-from actr3d.world.mesh import INVISIBLE, Quaternion, orientation
+from actr3d.world.mesh import HIDDEN_GROUP, INVISIBLE, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
 from actr3d.world.scene import on_one_line
 from actr3d.world.scene_objects import Heading, Name
-
-HIDDEN_GROUP = 3
-"""First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
 
 GEOM_FIELDS = (
     *("type", "pos", "quat", "fromto", "size", "mass", "density", "typeinertia", "meshname", "hfieldname", "fitscale"),
@@ -106,7 +103,7 @@ class Imported(Configuration):
 
     def roots(self) -> tuple[str, ...]:
         """Returns the names in the file of the bodies directly in the world; empty for one without a name."""
-        return tuple(body.name for body in _specification(_document(self.files or ()), self.free).worldbody.bodies)
+        return _roots(self.files or (), self.free)
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Attaches it at its place and orientation."""
@@ -151,6 +148,12 @@ def _package_folder(path: Path) -> Path:
 @lru_cache(maxsize=64)
 def _document(files: Files) -> Document:
     return read_imported(AssetFolder(Path(), WorldError, files), files[0][0])
+
+
+@lru_cache(maxsize=64)
+def _roots(files: Files, free: bool) -> tuple[str, ...]:
+    """Returns the names of the bodies directly in the world; empty for one without a name."""
+    return tuple(body.name for body in _specification(_document(files), free).worldbody.bodies)
 
 
 @lru_cache(maxsize=64)

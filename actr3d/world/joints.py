@@ -7,6 +7,7 @@ import math
 import numpy as np
 from mujoco import MjModel, mjtJoint, mjtTrn
 
+from actr3d.errors import WorldError
 from actr3d.world.physics import Physics
 
 AT_LIMIT = 2e-3
@@ -37,13 +38,14 @@ class Joint:
         self.q, self.v = int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
         self.servo: int | None = _servo_of(model, number)
         """The actuator that moves it; None if the joint is not actuated."""
-        self._control, self._gear, self.speeds = -1, 1.0, (-math.inf, math.inf)
+        self._control, self._gear = -1, 1.0
+        self.speeds = (-math.inf, math.inf)
+        """The least and the greatest speed that its servo can be set to keep [rad/s] or [m/s]."""
         if self.servo is not None:
             self._control, self._gear = int(model.actuator_ctrladr[self.servo]), float(model.actuator_gear[self.servo, 0])
             if model.actuator_ctrllimited[self.servo]:
                 least, greatest = sorted(float(control) / self._gear for control in model.actuator_ctrlrange[self.servo])
                 self.speeds = least, greatest
-        """The least and the greatest speed that its servo can be set to keep [rad/s] or [m/s]."""
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -71,6 +73,8 @@ class Joint:
 
     @control.setter
     def control(self, value: float) -> None:
+        if self.servo is None:
+            raise WorldError(f"joint '{self.name}' has no servo that could move it")
         self._ctrl[self._control] = self._gear * value
 
     @property

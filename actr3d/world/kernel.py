@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 from mujoco import mjtGeom
 from numpy.typing import NDArray
 
-from actr3d.jit import compiled, kept
+from actr3d.jit import compile_cached, inner_compiled
 
 Array: TypeAlias = NDArray[Any]
 
@@ -19,7 +19,7 @@ SPHERE, CAPSULE, ELLIPSOID = int(mjtGeom.mjGEOM_SPHERE), int(mjtGeom.mjGEOM_CAPS
 CYLINDER, BOX = int(mjtGeom.mjGEOM_CYLINDER), int(mjtGeom.mjGEOM_BOX)
 
 
-@compiled
+@inner_compiled
 def extent(geom: Any, types: Array, sizes: Array, rotations: Array, u: float, v: float, w: float) -> float:
     """Returns the extent of a geom from its centre along a direction (u, v, w) [m], given the types, sizes and rotations of all geoms."""
     kind, x, y, z = types[geom], sizes[geom, 0], sizes[geom, 1], sizes[geom, 2]
@@ -45,7 +45,7 @@ def extend_box() -> Callable[[Array, Array, Array, Array, Array, Array, Array, A
     Its arguments are: the geoms (n,), the types (ngeom,), sizes, positions and rotations of all geoms as in MuJoCo, the frame's origin
     (3,) and axes (3, 3) as columns, and the box (2, 3), least and greatest coordinates in that frame [m].
     """
-    return kept(_extend_box, Path(__file__))
+    return compile_cached(_extend_box, Path(__file__))
 
 
 def _extend_box(
@@ -67,7 +67,7 @@ def any_within_distance() -> Callable[[Array, Array, Array, Array, Array, float]
     Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
     and the distance [m].
     """
-    return kept(_any_within_distance, Path(__file__))
+    return compile_cached(_any_within_distance, Path(__file__))
 
 
 def _any_within_distance(geoms: Array, boxes: Array, positions: Array, rotations: Array, point: Array, distance: float) -> bool:
@@ -92,7 +92,7 @@ def fastest() -> Callable[[Array, Array, Array, float], float]:
     by degree of freedom (nv,), how many consecutive ones, from it on, form one velocity vector: 1 for a single one, 0 for later members;
     and the extent of held objects beyond the hands [m].
     """
-    return kept(_fastest, Path(__file__))
+    return compile_cached(_fastest, Path(__file__))
 
 
 def _fastest(reaches: Array, speeds: Array, together: Array, held: float) -> float:
@@ -120,7 +120,7 @@ def compute_deviations() -> Callable[..., bool]:
     its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if
     no joint moves [s]; the slight deviations of place and speed; and an array (3, n) for the results, see `ActuatedDofs.deviations`.
     """
-    return kept(_compute_deviations, Path(__file__))
+    return compile_cached(_compute_deviations, Path(__file__))
 
 
 def _compute_deviations(
@@ -168,7 +168,7 @@ def apply_corrections() -> Callable[..., None]:
     the ways back, along the world's axes, NaN for what moves; the speeds to keep of what moves; the time constant [s] and the greatest
     speed of corrections; the difference from which a speed is set at once; and those which only their servos change.
     """
-    return kept(_apply_corrections, Path(__file__))
+    return compile_cached(_apply_corrections, Path(__file__))
 
 
 def _apply_corrections(
@@ -230,7 +230,7 @@ def stride_changes() -> Callable[..., float]:
     [s]; (n,) what was added to each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It
     returns the greatest wanted change.
     """
-    return kept(_stride_changes, Path(__file__))
+    return compile_cached(_stride_changes, Path(__file__))
 
 
 def _stride_changes(
@@ -284,7 +284,7 @@ def _stride_changes(
 @cache
 def shift_held() -> Callable[..., bool]:
     """Returns the function that shifts held places, and commands the speeds that reach them; see `ActuatedDofs.shift_held`."""
-    return kept(_shift_held, Path(__file__))
+    return compile_cached(_shift_held, Path(__file__))
 
 
 def _shift_held(

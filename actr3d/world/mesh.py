@@ -25,8 +25,10 @@ from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Name, Posit
 
 Quaternion = tuple[float, float, float, float]
 
-INVISIBLE = {"rgba": (0.0, 0.0, 0.0, 0.0), "group": 3}
-"""Options of an invisible geom for contacts: rays ignore alpha 0, MuJoCo's viewers do not draw group 3."""
+HIDDEN_GROUP = 3
+"""First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
+INVISIBLE = {"rgba": (0.0, 0.0, 0.0, 0.0), "group": HIDDEN_GROUP}
+"""Options of an invisible geom for contacts: rays ignore alpha 0, MuJoCo's viewers do not draw the group."""
 
 GREY = (0.6, 0.6, 0.6, 1.0)
 """The default colour of a mesh."""

@@ -86,7 +86,7 @@ def read_triangles(folder: AssetFolder, name: str, up: str | None = None) -> Tri
 
 
 class _Beside:
-    """Gives trimesh the files that a mesh mentions, from its folder; notes a missing one. No image is read."""
+    """Provides trimesh with the files that a mesh mentions, from its folder; notes a missing one. No image is read."""
 
     def __init__(self, folder: AssetFolder, name: str) -> None:
         self._folder, self._name = folder, name

@@ -8,6 +8,7 @@ from typing import Any
 
 from actr3d.world.anatomy import Steering
 from actr3d.world.base import Base
+from actr3d.world.frames import wrapped
 from actr3d.world.joints import Joint
 from actr3d.world.physics import Physics
 from actr3d.world.posture_hold import PostureHold
@@ -103,10 +104,10 @@ class MotionCommands:
         there = [name for name in self.targets if self._finish_if_arrived(name)]
         if len(there) == len(self.targets):
             self.targets.clear()
-        if self.waypoint is not None and math.dist(self.waypoint[:2], base.place[:2]) <= ARRIVAL_TOLERANCE:
+        if self.waypoint is not None and math.dist(self.waypoint[:2], base.pose[:2]) <= ARRIVAL_TOLERANCE:
             x, y, _, _ = self.waypoint
             self.waypoint = None
-            base.place = (x, y, base.place[2])
+            base.pose = (x, y, base.pose[2])
             self._hold.stand()
             self._hold.drive_base((0.0, 0.0, 0.0))
 
@@ -153,10 +154,10 @@ class MotionCommands:
         base, hold = self._base, self._hold
         target, _ = self.targets[name]
         if name in (HEADING, TURN):
-            x, y, heading = base.place
+            x, y, heading = base.pose
             rest = self._rest(name)
             if abs(rest) <= ARRIVAL_TOLERANCE:
-                base.place = (x, y, heading + rest)
+                base.pose = (x, y, heading + rest)
                 hold.stand()
                 hold.drive_base((*hold.base_command[:2], 0.0))
                 return True
@@ -180,14 +181,14 @@ class MotionCommands:
 
     def _rest(self, name: str) -> float:
         """Returns the rest of a turn of the base [rad]."""
-        rest = self.targets[name][0] - self._base.place[2]
-        return rest if name == TURN else _wrapped(rest)
+        rest = self.targets[name][0] - self._base.pose[2]
+        return rest if name == TURN else wrapped(rest)
 
     def _walk(self, x: float, y: float, speed: float, turn: float, duration: float) -> None:
         """Turns towards the point and walks straight to it."""
-        at_x, at_y, heading = self._base.place
+        at_x, at_y, heading = self._base.pose
         way = math.dist((x, y), (at_x, at_y))
-        off = _wrapped(math.atan2(y - at_y, x - at_x) - heading)
+        off = wrapped(math.atan2(y - at_y, x - at_x) - heading)
         # Near the point its direction means little, and turning to it would only swing the body.
         spin = _bounded(off / duration, turn) if way > speed * duration else 0.0
         pace = min(speed, way / duration) if spin == 0 or abs(off) < MAX_DIRECTION_ERROR else 0.0
@@ -204,8 +205,3 @@ class MotionCommands:
 
 def _bounded(value: float, bound: float) -> float:
     return max(-bound, min(bound, value))
-
-
-def _wrapped(angle: float) -> float:
-    """Returns the same direction in -pi to pi [rad]."""
-    return math.remainder(angle, 2 * math.pi)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
-from actr3d.world.command_registry import checked_angle, number
-from actr3d.world.frames import heading_in, turn_to
+from actr3d.world.command_registry import checked_angle, checked_number
+from actr3d.world.frames import heading_in, turn_to, wrapped
 from actr3d.world.physics import Physics
 
 MAX_PENETRATION = 0.01
@@ -70,11 +70,7 @@ class Objects:
         names = {int(number): str(model.body(int(number)).name) for number in np.flatnonzero(model.body_parentid == 0)[1:]}
         own = {body.root for body in bodies.values()}
         self._obstacles = {name: number for number, name in names.items() if model.body_mocapid[number] >= 0 and name not in excluded}
-        self._loose = {name: number for number, name in names.items() if number not in own and self._is_free(number)}
-
-    def _is_free(self, body: int) -> bool:
-        model = self._physics.mj_model
-        return int(model.body_jntnum[body]) == 1 and int(model.jnt_type[model.body_jntadr[body]]) == 0
+        self._loose = {name: number for number, name in names.items() if number in physics.free_joints and number not in own}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -82,19 +78,20 @@ class Objects:
         return (*self._bodies, *self._obstacles, *self._loose)
 
     def pose(self, name: str) -> Placement:
-        """Returns where an object is.
+        """Returns where an object is, its heading in -pi to pi.
 
         Raises:
             WorldError: If there is no such object.
         """
         number, data = self._number(name, self.names, "move"), self._physics.mj_data
         if name in self._bodies and self._bodies[name].base.planar:
-            return self._bodies[name].base.place
+            x, y, heading = self._bodies[name].base.pose
+            return x, y, wrapped(heading)
         if name in self._obstacles:
             mocap = int(self._physics.mj_model.body_mocapid[number])
             (x, y, _), turned = data.mocap_pos[mocap].tolist(), data.mocap_quat[mocap]
         else:
-            at = int(self._physics.mj_model.jnt_qposadr[self._physics.mj_model.body_jntadr[number]])
+            at, _ = self._physics.free_joints[number]
             (x, y, _), turned = data.qpos[at : at + 3].tolist(), data.qpos[at + 3 : at + 7]
         return x, y, heading_in(turned.tolist())
 
@@ -106,7 +103,7 @@ class Objects:
                 would be inside another object. Then nothing is moved.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
-        x, y, heading = place("move", x, y, heading)
+        x, y, heading = checked_pose("move", x, y, heading)
         moved = {number, *self._held(name)}
         self._check_free(name, moved)
         before, depths = physics.integration_state(), self.depths(moved)
@@ -119,12 +116,7 @@ class Objects:
             if heading is not None:
                 turn_to(physics.mj_data.mocap_quat[mocap], heading)
         else:
-            joint = int(physics.mj_model.body_jntadr[number])
-            q, v = int(physics.mj_model.jnt_qposadr[joint]), int(physics.mj_model.jnt_dofadr[joint])
-            physics.mj_data.qpos[q : q + 2] = (x, y)
-            physics.mj_data.qvel[v : v + 6] = 0
-            if heading is not None:
-                turn_to(physics.mj_data.qpos[q + 3 : q + 7], heading)
+            physics.put_loose(number, x, y, heading)
         physics.changed()
         others = too_deep(depths, self.depths(moved))
         if others:
@@ -182,7 +174,7 @@ class Objects:
                 whatever is in them.
         """
         physics = self._physics
-        physics.refresh()
+        physics.refresh_contacts()
         contacts, depths = physics.mj_data.contact, dict[str, Penetration]()
         pairs: list[list[int]] = contacts.geom.tolist()
         kinds = [[self._kind(geom) for geom in pair] for pair in pairs]
@@ -257,8 +249,8 @@ class Pushes:
             WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
         pushed = self._objects.pushed(name)
-        x, y = (number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
-        time = number(time, "push: time", 1e-6, LONGEST)
+        x, y = (checked_number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
+        time = checked_number(time, "push: time", 1e-6, LONGEST)
         self.restore((*self._pushes, (pushed, x, y, max(1, round(time / self._physics.timestep)))))
 
     def begin(self, steps: int) -> None:
@@ -291,7 +283,7 @@ class Pushes:
         self._physics.pushes = tuple((body, x, y) for body, x, y, _ in state)
 
 
-def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
+def checked_pose(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
     """Returns a place (x, y) [m] and a heading [rad], if any, as numbers within bounds.
 
     Args:
@@ -303,7 +295,7 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
     Raises:
         WorldError: If a value is not a number, or out of bounds.
     """
-    x, y = number(x, f"{what}: x", -FARTHEST, FARTHEST), number(y, f"{what}: y", -FARTHEST, FARTHEST)
+    x, y = checked_number(x, f"{what}: x", -FARTHEST, FARTHEST), checked_number(y, f"{what}: y", -FARTHEST, FARTHEST)
     return x, y, None if heading is None else checked_angle(heading, f"{what}: heading")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import mujoco
@@ -10,6 +11,7 @@ from mujoco import MjData, MjModel, mjtState
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.frames import turn_to
 from actr3d.world.scene import Scene
 
 INTEGRATION = mjtState.mjSTATE_INTEGRATION
@@ -17,6 +19,9 @@ INTEGRATION = mjtState.mjSTATE_INTEGRATION
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
+
+_IN_FWD_POSITION = (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_flex, mujoco.mj_tendon, mujoco.mj_makeM, mujoco.mj_collision)
+"""What `mj_fwdPosition` computes, too."""
 
 
 class Physics:
@@ -40,8 +45,8 @@ class Physics:
         """Physics steps since the start."""
         self.state_number = 0
         """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
-        self._updated = 0
-        """How much of what follows from the state is up to date: 1 positions, 2 also contacts, 3 all but forces, 4 all."""
+        self._updated: set[Callable[[MjModel, MjData], None]] = set()
+        """What computed those parts of what follows from the state that are up to date."""
         self._scratch: MjData | None = None
         self._numbers = np.empty(mujoco.mj_stateSize(self.mj_model, INTEGRATION))
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
@@ -50,6 +55,9 @@ class Physics:
         """By geom: the name of the object that it belongs to; a geom of the world itself, or of a body without a name, has its own name."""
         self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
         """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
+        model, free = self.mj_model, np.flatnonzero(self.mj_model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)).tolist()
+        self.free_joints = {int(model.jnt_bodyid[n]): (int(model.jnt_qposadr[n]), int(model.jnt_dofadr[n])) for n in free}
+        """By MuJoCo body with a free joint: where its pose begins in `qpos`, and its speed in `qvel`."""
         self.grasped: dict[int, int] = {}
         """By weld of a hand: the MuJoCo body that the hand holds."""
         self.pushes: tuple[tuple[int, float, float], ...] = ()
@@ -66,7 +74,7 @@ class Physics:
 
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds, commands or the compiled model have changed."""
-        self._updated = 0
+        self._updated.clear()
         self.state_number += 1
 
     def refresh_positions(self) -> None:
@@ -74,37 +82,39 @@ class Physics:
 
         After a step, MuJoCo's geometry (`xpos`, contacts) is that of the positions before it.
         """
-        if self._updated < 1:
-            mujoco.mj_kinematics(self.mj_model, self.mj_data)
-            self._updated = 1
+        self._update(mujoco.mj_kinematics)
+        if self.mj_model.nflex:  # the points of soft objects are not part of the state
+            self._update(mujoco.mj_comPos, mujoco.mj_flex)
+
+    def refresh_velocities(self) -> None:
+        """Updates positions and the velocities of all parts to the state, once per state."""
+        self._update(mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel)
 
     def refresh_inertia(self) -> None:
-        """Updates positions and inertia to the state."""
-        self.refresh_positions()
-        for update in (mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM):
-            update(self.mj_model, self.mj_data)
+        """Updates positions and inertia to the state, once per state."""
+        self._update(mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM)
 
     def refresh_contacts(self) -> None:
         """Updates positions and contacts to the state, once per state."""
-        if self._updated < 2:
-            self.refresh_positions()
-            mujoco.mj_collision(self.mj_model, self.mj_data)
-            self._updated = 2
+        self.refresh_positions()
+        self._update(mujoco.mj_collision)
 
     def refresh(self) -> None:
         """Updates all that follows from the positions, such as contacts and rays, to the state, once per state."""
-        if self._updated < 3:
-            mujoco.mj_fwdPosition(self.mj_model, self.mj_data)
-            self._updated = 3
+        self._update(mujoco.mj_fwdPosition)
+        self._updated.update(_IN_FWD_POSITION)
 
     def solve(self) -> None:
         """Updates forces and accelerations to the state too, once per state, without an effect on later steps."""
         self.refresh()
-        if self._updated < 4:
-            start = self.mj_data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
-            mujoco.mj_forwardSkip(self.mj_model, self.mj_data, mujoco.mjtStage.mjSTAGE_POS, 1)
-            self.mj_data.qacc_warmstart[:] = start
-            self._updated = 4
+        self._update(_solve)
+
+    def _update(self, *parts: Callable[[MjModel, MjData], None]) -> None:
+        """Computes parts of what follows from the state, those that are out of date."""
+        for part in parts:
+            if part not in self._updated:
+                part(self.mj_model, self.mj_data)
+                self._updated.add(part)
 
     def accelerations(self) -> NDArray[np.float64]:
         """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2, rad/s^2].
@@ -153,19 +163,29 @@ class Physics:
 
     # -- objects
 
+    @property
+    def solid(self) -> NDArray[np.bool_]:
+        """By geom (ngeom,): whether it has contacts."""
+        return (self.mj_model.geom_contype | self.mj_model.geom_conaffinity) != 0
+
     def loose(self, name: str) -> int:
         """Returns the MuJoCo body of a loose object.
 
         Raises:
             WorldError: If there is no such object, or it is fixed.
         """
-        model = self.mj_model
-        free = {
-            str(model.body(int(model.jnt_bodyid[n])).name): int(model.jnt_bodyid[n]) for n in range(model.njnt) if model.jnt_type[n] == 0
-        }
+        free = {str(self.mj_model.body(body).name): body for body in self.free_joints}
         if str(name) not in free:
             raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
         return free[str(name)]
+
+    def put_loose(self, body: int, x: float, y: float, heading: float | None) -> None:
+        """Puts a MuJoCo body with a free joint at (x, y) [m], with a heading [rad] or its present one, at rest."""
+        q, v = self.free_joints[body]
+        self.mj_data.qpos[q : q + 2] = (x, y)
+        self.mj_data.qvel[v : v + 6] = 0
+        if heading is not None:
+            turn_to(self.mj_data.qpos[q + 3 : q + 7], heading)
 
     def other_side(self, contact: int, side: int) -> str:
         """Returns the name of the object on one side (0 or 1) of a contact."""
@@ -178,3 +198,10 @@ class Physics:
     def _owner(self, geom: int) -> str:
         body = int(self.mj_model.geom_bodyid[geom])
         return (body and self._root_name(body)) or str(self.mj_model.geom(geom).name)
+
+
+def _solve(model: MjModel, data: MjData) -> None:
+    """Computes forces and accelerations, without an effect on later steps."""
+    start = data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
+    mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 1)
+    data.qacc_warmstart[:] = start

@@ -10,7 +10,6 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError
 from actr3d.world.actuated_dofs import ActuatedDofs, Row
 from actr3d.world.base import Base
 from actr3d.world.contacts import BodyContacts
@@ -64,7 +63,7 @@ class PostureHold:
         self._rows = dofs.base
         self.commanded: Row = np.zeros(len(dofs.q))
         """The commanded speeds of base and joints, in the rows of `ActuatedDofs`."""
-        self.held: Row = dofs.places
+        self.held: Row = dofs.positions
         """The places to hold; NaN where it is commanded to move."""
         self.calm = True
         """Whether nothing has touched it since its base last had the commanded speed."""
@@ -99,10 +98,8 @@ class PostureHold:
         servo accelerates it, so that no command can press a limb into a wall, or throw the body about.
 
         Raises:
-            WorldError: If no servo moves it.
+            WorldError: If no servo moves it, and the speed is not 0.
         """
-        if joint.servo is None:
-            raise WorldError(f"joint '{joint.name}' has no servo that could move it")
         if self.joint_speed(joint) == speed:
             return
         row = self.row(joint.name)
@@ -110,7 +107,7 @@ class PostureHold:
             joint.control = speed
         else:
             self._command(slice(row, row + 1), speed)
-            self.held[row] = self._dofs.places[row] if speed == 0 else math.nan
+            self.held[row] = self._dofs.positions[row] if speed == 0 else math.nan
             self._moves = bool(self.commanded[self._rows :].any())
         if speed == 0:
             self._halt([joint.v])
@@ -134,7 +131,7 @@ class PostureHold:
         self._command(slice(3), speed)
         if speed == (0, 0, 0):
             self._end_correction()
-        here = self._dofs.places
+        here = self._dofs.positions
         self.held[:2] = here[:2] if speed == (0, 0, 0) else math.nan
         if speed[2] != 0:
             self.held[2] = math.nan
@@ -152,7 +149,7 @@ class PostureHold:
         if joint is not None and row is None:
             return
         rows = slice(self._rows) if row is None else slice(row, row + 1)
-        self.held[rows] = np.where(np.isfinite(self.held[rows]), self._dofs.places[rows], math.nan)
+        self.held[rows] = np.where(np.isfinite(self.held[rows]), self._dofs.positions[rows], math.nan)
 
     def _command(self, rows: slice, speed: float | tuple[float, ...]) -> None:
         self.commanded[rows] = speed
@@ -202,7 +199,7 @@ class PostureHold:
         """
         dofs = self._dofs
         forward, left, _ = self.base_command
-        stance, torso = (0.0 if row is None else dofs.place(row) for row in self._trunk)
+        stance, torso = (0.0 if row is None else dofs.position(row) for row in self._trunk)
         changes = gait.advance(forward, left, stance, torso, self.held, duration)
         held = self.held.copy()
         if dofs.shift_held(gait.rows, changes, self.held, self.commanded, held, duration):
@@ -250,13 +247,13 @@ class PostureHold:
     def _yield(self, ways: Row) -> None:
         """Accepts the place to which the base was pushed, except for slight deviations."""
         ways[: self._rows] = np.clip(ways[: self._rows], -YIELD, YIELD)
-        self.held[: self._rows] = self._dofs.places[: self._rows] + ways[: self._rows]
+        self.held[: self._rows] = self._dofs.positions[: self._rows] + ways[: self._rows]
 
     def _follow_loop(self) -> None:
         """Holds standing joints at their present places, while another joint in the same loop moves and moves them too."""
         if self._loop_moves():
             stand = self._dofs.looped & np.isfinite(self.held)
-            self.held[stand] = self._dofs.places[stand]
+            self.held[stand] = self._dofs.positions[stand]
 
     def _loop_moves(self) -> bool:
         return self._dofs.loops and bool(np.isnan(self.held[self._dofs.looped]).any())

@@ -12,7 +12,7 @@ from mujoco import MjModel, MjSpec, mjtGeom
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
-from actr3d.world.frames import FULL_TURN, yaw_quaternion
+from actr3d.world.frames import FULL_TURN, wrapped, yaw_quaternion
 
 Name = Annotated[str, MinLen(1)]
 Length = Annotated[float, Gt(0)]
@@ -203,7 +203,7 @@ class Track(Configuration):
             if one == other:
                 raise ConfigurationError(f"Track '{self.name}'.points: the points {n} and {n + 1} are the same, {one}")
         for n, (before, after) in enumerate(pairwise(self._headings()), start=1):
-            turn = abs(math.remainder(after - before, math.tau))
+            turn = abs(wrapped(after - before))
             if turn > SHARPEST:
                 most, got = math.degrees(SHARPEST), math.degrees(turn)
                 raise ConfigurationError(
@@ -232,7 +232,7 @@ class Track(Configuration):
         headings = self._headings()
         line: list[tuple[float, float]] = []
         for (x, y), before, after in zip(self.points, [headings[0], *headings], [*headings, headings[-1]], strict=True):
-            half = math.remainder(after - before, math.tau) / 2
+            half = wrapped(after - before) / 2
             heading, away = before + half, by / math.cos(half)
             line.append((x - math.sin(heading) * away, y + math.cos(heading) * away))
         return line

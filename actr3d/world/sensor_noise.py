@@ -10,7 +10,7 @@ from typing import Any, cast
 from numpy.random import PCG64, Generator, SeedSequence
 
 from actr3d.errors import WorldError, alternatives
-from actr3d.world.command_registry import number
+from actr3d.world.command_registry import checked_number
 
 Noise = tuple[tuple[str, float | tuple[tuple[str, float], ...]], ...]
 """Of a body's description: the name of a sensor, and the standard deviation of every number of its readings, or by field."""
@@ -46,7 +46,8 @@ class SensorNoise:
                 noise cannot be added to a reading of this type.
         """
         of = f"{self._name}: noise of {sensor}"
-        checked = {_field(name, of): number(value, of, 0) for name, value in sd.items()} if isinstance(sd, Mapping) else number(sd, of, 0)
+        fields = {_field(name, of): checked_number(value, of, 0) for name, value in sd.items()} if isinstance(sd, Mapping) else None
+        checked = checked_number(sd, of, 0) if fields is None else fields
         if sensor not in self._generators:
             self._generators[sensor] = Generator(PCG64(SeedSequence([self._seed, *f"{self._name} {sensor}".encode()])))
         return _noisy(sensor, reading, checked, self._generators[sensor])

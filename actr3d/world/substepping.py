@@ -144,6 +144,5 @@ class Substepping:
 def _others(body: Body) -> NDArray[np.intp]:
     """Returns the geoms with contacts that a body could pass through: those of other objects, without planes."""
     model = body.physics.mj_model
-    solid = (model.geom_contype | model.geom_conaffinity) != 0
-    solid &= (model.geom_type != int(mjtGeom.mjGEOM_PLANE)) & ~body.members[model.geom_bodyid]
-    return np.flatnonzero(solid)
+    others = body.physics.solid & (model.geom_type != int(mjtGeom.mjGEOM_PLANE)) & ~body.members[model.geom_bodyid]
+    return np.flatnonzero(others)

@@ -279,14 +279,18 @@ def test_the_library_is_imported_without_the_camera() -> None:
 
 @pytest.mark.slow
 def test_linear_algebra_is_loaded_for_functions_that_need_it_only() -> None:
-    lines = ("import sys, numba, numpy; from actr3d.jit import kept", "loaded = lambda: 'scipy.linalg' in sys.modules")
-    lines += ("print(kept(lambda a: a + 1)(1), loaded())", "print(numba.njit(lambda a: a @ a)(numpy.eye(1))[0, 0], loaded())")
+    lines = ("import sys, numba, numpy; from actr3d.jit import compile_cached", "loaded = lambda: 'scipy.linalg' in sys.modules")
+    lines += ("print(compile_cached(lambda a: a + 1)(1), loaded())", "print(numba.njit(lambda a: a @ a)(numpy.eye(1))[0, 0], loaded())")
     done = subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, capture_output=True, text=True)
     assert done.stdout == "2 False\n1.0 True\n"
 
 
 def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> None:
-    lines = ("from actr3d.jit import kept", "add = kept(lambda a, b: a + b)", "print(add(1, 2), type(add._cache).__name__)")
+    lines = [
+        "from actr3d.jit import compile_cached",
+        "add = compile_cached(lambda a, b: a + b)",
+        "print(add(1, 2), type(add._cache).__name__)",
+    ]
     (tmp_path / "adding.py").write_text("\n".join(lines))
     for places, cache in (("InTreeCacheLocator", "FunctionCache"), ("ZipCacheLocator", "NullCache")):
         run = [sys.executable, str(tmp_path / "adding.py")]
@@ -298,7 +302,7 @@ def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> N
 def test_a_cache_that_cannot_be_read_any_more_is_not_read(tmp_path: Path) -> None:
     lines = ["import sys", "from actr3d import jit"]
     lines += ["jit.sources_digest = lambda *sources: int(sys.argv[2])", "shape = __import__(sys.argv[1])"]
-    lines += ["def first(size): return size.width", "print(jit.kept(first)(shape.Size(2)))"]
+    lines += ["def first(size): return size.width", "print(jit.compile_cached(first)(shape.Size(2)))"]
     (tmp_path / "sizes.py").write_text("\n".join(lines))
 
     def run(module: str, digest: int) -> str:

@@ -137,7 +137,7 @@ def test_it_turns_by_the_commanded_angle(by: float, speed: float) -> None:
     simulation, motor = moving()
     motor.turn(by, speed)
     assert until(simulation, lambda: not motor.turning) == near(abs(by) / speed * 100 + 1, abs=1)
-    assert math.degrees(simulation.world.bodies["walker"].base.place[2]) == near(by, abs=0.02)
+    assert math.degrees(simulation.world.bodies["walker"].base.pose[2]) == near(by, abs=0.02)
     assert ended(motor, "legs") == "done"
 
 
@@ -155,7 +155,7 @@ def test_walking_faster_or_stopping_the_legs_leaves_a_turn_and_limbs_alone() -> 
     assert not motor.walking
     assert ended(motor, "legs") == "stopped"
     assert until(simulation, lambda: not motor.turning) + 31 == 101
-    assert math.degrees(simulation.world.bodies["walker"].base.place[2]) == near(90, abs=0.05)
+    assert math.degrees(simulation.world.bodies["walker"].base.pose[2]) == near(90, abs=0.05)
     assert motor.torso_busy is False
     assert angle(simulation, "torso_yaw") == near(80, abs=0.05)
 
@@ -170,7 +170,7 @@ def test_a_turn_without_an_end_changes_its_speed_while_it_walks() -> None:
     assert motor.refusal is None
     assert motor.walking
     assert motor.turning
-    heading = math.degrees(simulation.world.bodies["walker"].base.place[2])
+    heading = math.degrees(simulation.world.bodies["walker"].base.pose[2])
     assert heading == near(10 - 20, abs=0.7)
     motor.turn(30)
     assert motor.refusal == "busy", "one by an angle waits for its end"
@@ -188,7 +188,7 @@ def test_it_turns_until_the_command_to_stop() -> None:
     assert motor.turning
     motor.stop("legs")
     simulation.step(5)
-    assert math.degrees(simulation.world.bodies["walker"].base.place[2]) == near(-50, abs=0.5)
+    assert math.degrees(simulation.world.bodies["walker"].base.pose[2]) == near(-50, abs=0.5)
 
 
 def test_lowering_the_arms_moves_both_to_where_they_hang() -> None:

@@ -328,7 +328,7 @@ def test_a_run_without_limits_continues_until_bodies_have_reached_their_targets(
     simulation.command("position", "head_yaw", 0.5, body="other")
     assert simulation.advance(2) is None
     assert (simulation.run().ended_by, simulation.ticks) == ("done", 25)
-    assert (*walker.base.place[:2], other.joints["head_yaw"].position) == near((0.2, 0, 0.5))
+    assert (*walker.base.pose[:2], other.joints["head_yaw"].position) == near((0.2, 0, 0.5))
     simulation.command("walk", 0.5, body="walker")  # has no end
     assert simulation.run().ticks == 0
 
@@ -339,10 +339,10 @@ def test_a_movement_that_something_blocks_does_not_keep_a_run_going() -> None:
     walker = simulation.world.bodies["walker"]
     simulation.command("waypoint", 2, 0.1)
     assert simulation.run().ended_by == "done"
-    assert 0.1 < walker.base.place[0] < 0.6
+    assert 0.1 < walker.base.pose[0] < 0.6
     simulation.command("waypoint", 0, 0)  # it is still at rest, but it can go there
     assert simulation.run().ended_by == "done"
-    assert walker.base.place[:2] == near((0, 0))
+    assert walker.base.pose[:2] == near((0, 0))
 
 
 def test_until_is_checked_after_each_tock() -> None:

@@ -11,8 +11,8 @@ from actr3d.errors import ConfigurationError, ParameterError, WorldError
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.vision import Emma, Vision
-from actr3d.vision.encoding import saccade_time
 from actr3d.world import Aperture, Car, Floor, Mannequin, Scene, World
+from actr3d.world.actuators.motion import saccade_time
 from tests.helpers.small_agents import near
 from tests.helpers.vision_scenes import AgentWithoutPhysics, agent, events
 

@@ -35,7 +35,7 @@ def walk(world: World, ticks: int, read: Callable[[], Any] = lambda: None) -> ND
 
 def lateral(world: World) -> Callable[[], float]:
     """Returns a reading of the torso's place to the left of the base [m]."""
-    return lambda: float(world.mj_data.body("p_torso").xpos[1]) - world.bodies["p"].base.place[1]
+    return lambda: float(world.mj_data.body("p_torso").xpos[1]) - world.bodies["p"].base.pose[1]
 
 
 @pytest.mark.parametrize(("speed", "excursion"), [(0.7, 0.07), (1.15, 0.055), (1.6, 0.04)])
@@ -156,7 +156,7 @@ def test_it_walks_as_far_as_without_gait() -> None:
     body = world.bodies["p"]
     body.set("walk", 1.3)
     walk(world, 1000)
-    x, y, heading = body.base.place
+    x, y, heading = body.base.pose
     assert x == pytest.approx(13, abs=0.005)
     assert y == pytest.approx(0, abs=0.005)
     assert heading == pytest.approx(0, abs=0.002)
@@ -198,7 +198,7 @@ def test_a_wall_stops_it_without_hurting_the_physics(speed: float) -> None:
     body = world.bodies["p"]
     body.set("walk", speed)
     fastest = walk(world, 500, lambda: np.abs(world.mj_data.qvel).max())
-    assert body.base.place[0] < 0.9
+    assert body.base.pose[0] < 0.9
     assert fastest.max() < 40
     deepest = min((contact.dist for contact in world.mj_data.contact), default=0.0)
     assert deepest > -0.02

@@ -435,6 +435,24 @@ def test_unnamed_and_soft_parts_are_felt_too(text: str, direction: float, feels:
     assert touches == {feels}
 
 
+def test_a_restored_world_with_a_soft_object_continues_as_the_first_time() -> None:
+    world = World(Scene(parts=(Imported(name="i", text=CLOTH), Mannequin(name="walker"))))
+
+    def walked(ticks: int) -> list[bytes]:
+        states: list[bytes] = []
+        for _ in range(ticks):
+            world.bodies["walker"].set("walk", 1.0)
+            world.step(5)
+            states.append(world.state_bytes())
+        return states
+
+    walked(22)
+    state = world.state()
+    first = walked(50)
+    world.restore(state)
+    assert walked(50) == first
+
+
 STEP = """<mujoco><default><default class="ground"><geom type="plane" size="9 9 1"/></default></default><worldbody><geom class="ground"/>
   <frame pos="1 0 0" euler="0 0 90"><geom {}type="box" size="2 .1 .15" pos="0 0 .15" rgba="1 0 0 1" friction="0.3"/></frame>
   <body name="b" pos="9 9 .1"><geom size=".1"/><joint/></body></worldbody>{}</mujoco>"""

@@ -227,3 +227,26 @@ def test_changes_of_the_world_are_exact_after_going_back_and_in_a_replay(tmp_pat
     assert set(ends) == {ends[0]}
     with Recorded(tmp_path / "run.sqlite") as recorded:
         assert replay(recorded, made).difference is None
+
+
+def test_a_turned_body_is_shown_with_a_heading_that_it_can_be_given() -> None:
+    made = world()
+    walker = made.bodies["walker"]
+    walker.set("turn", 7.5, 5.0)
+    made.step(1000)
+    x, y, heading = made.objects.pose("walker")
+    assert walker.base.heading == pytest.approx(7.5)
+    assert heading == pytest.approx(7.5 - 2 * math.pi)
+    made.move("walker", x, y, heading)
+
+
+def test_a_body_that_is_moved_while_it_turns_turns_by_the_rest_of_the_angle() -> None:
+    made = world()
+    walker = made.bodies["walker"]
+    walker.set("turn", 1.5)
+    made.step(5)
+    turned = walker.base.heading
+    made.move("walker", 0, 0, 3.0)
+    made.step(1000)
+    assert turned > 0
+    assert walker.base.heading == pytest.approx(3.0 + 1.5 - turned)

@@ -30,7 +30,8 @@ class SetParameter(AgentChange):
 
     def carry_out(self, on: Parts) -> None:
         place, _, name = self.path.rpartition(".")
-        part = on.part(Model, place or "top", "part")
+        place = place or "top"
+        part = on.part(Model, place, "part")
         known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in IMMUTABLE_TYPES]
         if name not in known:
             raise SimulationError(f"no parameter '{self.path}': '{place}' has no '{name}'{did_you_mean(name, known)}")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, Final, Literal, NamedTuple, cast
+from typing import Any, Final, Literal, NamedTuple, TypeGuard, cast
 
 from actr3d.actr.chunks.chunk import Chunk, Slot, as_text
 from actr3d.errors import PatternException
@@ -28,6 +28,11 @@ class Missing:
 MISSING: Final = Missing()
 
 Op = Literal["is", "not", "bind", "same", "differs", "empty", "call"]
+
+
+def by_variable(slot: Any) -> TypeGuard[str]:
+    """Returns whether a slot is given by a variable, `?slot`."""
+    return isinstance(slot, str) and slot[:1] == "?"
 
 
 class Condition(NamedTuple):
@@ -134,7 +139,7 @@ class _PatternParser:
 
     def _test(self, name: str | None, slot: Slot, sign: str, word: str) -> None:
         first = self.first
-        if isinstance(slot, str) and slot[:1] == "?":
+        if by_variable(slot):
             if slot[1:] in self.bound:
                 slot = slot_named(self.bound[slot[1:]])
             else:

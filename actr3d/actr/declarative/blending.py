@@ -14,7 +14,6 @@ from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.declarative.retrieval_record import Retrieval
 from actr3d.actr.declarative.spreading import names_a_chunk
-from actr3d.actr.kernel.parameters import check_attribute
 
 
 class BlendingMemory(Memory):
@@ -45,11 +44,6 @@ class BlendingMemory(Memory):
 
     temperature: Annotated[float, Gt(0)] | None
     """t; the profile's if it is None or was never set."""
-
-    def __setattr__(self, key: str, value: Any) -> None:
-        if key == "temperature":
-            check_attribute(type(self), key, value)
-        super().__setattr__(key, value)
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         matches = [match for match in matches if not math.isnan(match.activation)]

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any, Protocol, cast
 
 from actr3d.actr.chunks.chunk import Chunk, Slot, as_text
-from actr3d.actr.chunks.pattern import Pattern, parse
+from actr3d.actr.chunks.pattern import Pattern, by_variable, parse
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.partial_matching import Partial
 
@@ -38,9 +38,8 @@ class ChunkSearch(Protocol):
 def _variables(text: str) -> tuple[str, ...] | None:
     """Returns the variables in a request's text; None if it names slots that only `Pattern` can find."""
     tests = parse(text)
-    for slot, _, _ in tests:
-        if isinstance(slot, str) and (slot[0] == "?" or "." in slot):
-            return None
+    if not all(_is_plain(slot) for slot, _, _ in tests):
+        return None
     return tuple(dict.fromkeys(word for _, sign, word in tests if sign in ("?", "!?")))
 
 
@@ -245,7 +244,7 @@ class PatternSearch:
 
 def _is_plain(slot: Slot) -> bool:
     """Returns whether a slot is given by its name, not by a variable or a path."""
-    return not (isinstance(slot, str) and (slot[:1] == "?" or "." in slot))
+    return not (by_variable(slot) or (isinstance(slot, str) and "." in slot))
 
 
 def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> ChunkSearch:

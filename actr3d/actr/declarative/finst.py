@@ -6,7 +6,6 @@ from collections import deque
 from typing import Any
 
 from actr3d.actr.kernel.model import Model, profile_of
-from actr3d.actr.kernel.profile import PYTHON_ACTR
 
 
 class Finst:
@@ -81,7 +80,7 @@ class Finst:
     @property
     def _awaited(self) -> bool:
         """Whether a run continues until all marks have expired."""
-        return (profile_of(self.parent) or PYTHON_ACTR).awaits_expiry
+        return profile_of(self.parent).awaits_expiry
 
     def _mark(self, obj: Any) -> None:
         self._marks.append(obj)

@@ -21,7 +21,7 @@ from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters, warn_of_misspelling
+from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.actr.kernel.tree import path_of
@@ -66,7 +66,6 @@ class Memory(WithParameters, Model):
         finst_time: NotNegative = 3.0,
         profile: str | Profile | None = None,
     ) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self._profile = None if profile is None else find_profile(profile, "Memory.profile")
         self.dm: ChunkStore = ChunkStore()
@@ -109,11 +108,9 @@ class Memory(WithParameters, Model):
             if not isinstance(value, ChunkStore):
                 value = ChunkStore(value)  # a modeller's own list of chunks
             self._own_chunks(value)
-        elif key in ("latency", "maximum_time"):
+        super().__setattr__(key, value)
+        if key in ("latency", "maximum_time"):
             self.__dict__[f"_{key}_given"] = True
-        elif key not in self.__dict__:
-            warn_of_misspelling(self, key)
-        Model.__setattr__(self, key, value)
 
     # -- chunks
 
@@ -259,9 +256,7 @@ class Memory(WithParameters, Model):
         self.error = True
         self._buffer.clear()
         self.busy = False
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": True})
+        self.emit("retrieval", failed=True)
 
     @hook
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
@@ -294,8 +289,7 @@ class Memory(WithParameters, Model):
             time = min(self.latency * math.exp(-activation), self.maximum_time, LONGEST) if self.latency else 0.0
         except OverflowError:
             time = min(self.maximum_time, LONGEST)
-        profile = self._profile
-        return round(time * 1000) / 1000 if profile is not None and profile.whole_milliseconds else time
+        return round(time * 1000) / 1000 if self.effective_profile.whole_milliseconds else time
 
     def _time_of_failure(self) -> float:
         """Returns the time until a request fails [s]."""

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from actr3d.actr.chunks.chunk import as_text
-from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
+from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, by_variable, slot_named
 from actr3d.actr.explain.state import AgentState, Fact, is_unknown
+from actr3d.actr.kernel.noise import total
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import system_of
 from actr3d.actr.reasons import ConditionReason, ProductionReason
@@ -92,7 +93,7 @@ class ConditionTests:
                 return self._unknown(_text(condition), "empty", fact.source)
             self._fact = "empty" if fact.value else "not empty"
             return None if fact.value else Failure(condition=_text(condition), expected="empty", found=self._fact)
-        if isinstance(key, str) and key[:1] == "?":
+        if by_variable(key):
             if key[1:] in self._open:
                 return self._unknown(_text(condition), f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
             if key[1:] not in self._bound:
@@ -200,7 +201,7 @@ def why(production: Production, state: AgentState) -> ProductionReason:
         source=tests.source,
         bindings=tests.bindings,
         conditions=tests.conditions,
-        utility=sum(known) if len(known) == len(parts) else None,
+        utility=total(known) if len(known) == len(parts) else None,
         parts=parts,
         selected=choice is not None and choice.chosen == production.name,
         verdict=None if choice is None else choice.verdict(production.name),

@@ -13,6 +13,7 @@ from actr3d.actr.declarative.association import DMAssociate, DMInhibition
 from actr3d.actr.declarative.memory import Memory, own_activation
 from actr3d.actr.declarative.spreading import DMSalience, DMSpreading
 from actr3d.actr.explain.module_reasons import numbered
+from actr3d.actr.kernel.noise import total
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.errors import ChunkError
 
@@ -53,7 +54,7 @@ def _row(memory: Memory, chunk: Chunk) -> MemoryRow:
     return MemoryRow(
         chunk=chunk_text(chunk),
         slots={str(key): traceable(value) for key, value in chunk.items()},
-        activation=sum(known) if len(known) == len(parts) and not own else None,
+        activation=total(known) if len(known) == len(parts) and not own else None,
         parts={"get_activation": None} if own else parts,
     )
 

@@ -122,7 +122,7 @@ class PastMemory:
     # -- events
 
     def take(self, event: TraceEvent, time: float) -> None:
-        """Takes an event of the memory or of a source buffer.
+        """Processes an event of the memory or of a source buffer.
 
         Args:
             event: The event; the kinds `add`, `chunks`, `request` and `buffer` count.

@@ -57,6 +57,7 @@ class Model(TreeNode):
     _auto_run_start = True
     _init_log: Any = None
     _profile: Profile | None = None
+    """The profile of the model, if it or one above it has chosen one; see `profile_of`."""
     _setters: frozenset[str] = frozenset()
     """The attributes that the class's own properties set."""
     _slots: frozenset[str] = frozenset()
@@ -94,7 +95,7 @@ class Model(TreeNode):
         return self._converted
 
     def _convert(self, parent: Model | None = None) -> None:
-        """Gives the model the tree's clock, its own copies of its class's attributes, and its methods."""
+        """Sets the tree's clock for the model, its own copies of its class's attributes, and its methods."""
         own = self.__dict__
         own["_converted"] = True
         own["changes"] = Trigger("changes")
@@ -107,7 +108,7 @@ class Model(TreeNode):
         if parent is not None:
             ensure_converted(parent)
             own["sch"], own["log"], own["random"], own["parent"] = parent.sch, logs.dummy, parent.random, parent
-            self._follow(profile_of(parent))
+            self._follow(parent._profile)
         else:
             self._become_top()
             self._follow(None)
@@ -220,7 +221,7 @@ class Model(TreeNode):
                 self._merge_run(value)
             for part in subtree(value):
                 # Private, as everything that subclasses extend but productions must not see.
-                part._follow(profile_of(part.parent) if part.parent is not None else None)
+                part._follow(part.parent._profile if part.parent is not None else None)
         return True
 
     def _merge_run(self, other: Model) -> None:
@@ -439,9 +440,9 @@ def ensure_converted(model: Model, parent: Model | None = None) -> None:
         model._convert(parent)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
-def profile_of(model: Model) -> Profile | None:
-    """Returns the profile of a model; None for that of Python ACT-R."""
-    return model._profile  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+def profile_of(model: Model) -> Profile:
+    """Returns the profile of a model."""
+    return model._profile or PYTHON_ACTR  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def state_of(model: Model) -> dict[str, Any]:
@@ -635,7 +636,7 @@ def attach_trace(top: Model, trace: Trace) -> None:
 
 def _trace_opening(top: Model, trace: Trace) -> None:
     if trace.production:
-        data = {"model": type(top).__name__, "seed": top.sch.seed, "profile": (profile_of(top) or PYTHON_ACTR).name}
+        data = {"model": type(top).__name__, "seed": top.sch.seed, "profile": profile_of(top).name}
         trace.emit(top.sch.now_us, path_of(top), "start", data)
     _trace_states(top, trace)
 

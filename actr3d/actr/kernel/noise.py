@@ -30,9 +30,13 @@ def logistic_noise(numbers: Any, scale: float) -> float:
     return scale * math.log(1.0 / x - 1.0)
 
 
-def total(parts: Iterable[float]) -> float:
+def duration(numbers: random.Random, mean: float, sd: float | None) -> float:
+    """Draws a duration from the normal distribution, at least 0 [s]; without a standard deviation it is the mean."""
+    return mean if sd is None else max(0.0, numbers.gauss(mean, sd))
+
+
+def total(parts: Iterable[float], start: float = 0) -> float:
     """Adds numbers one by one; `sum` rounds differently from Python 3.12 on, and a model must give the same numbers everywhere."""
-    result: float = 0
     for part in parts:
-        result += part
-    return result
+        start += part
+    return start

@@ -8,10 +8,9 @@ from collections.abc import Callable, Iterator
 from functools import cache, wraps
 from itertools import islice
 from numbers import Integral, Real
-from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar, cast
-from weakref import WeakKeyDictionary
+from typing import Annotated, Any, ClassVar, Concatenate, ParamSpec, TypeVar, cast
 
-from annotated_types import Ge
+from annotated_types import Ge, Gt
 
 from actr3d.configuration import Infinite, checked
 from actr3d.errors import ConfigurationError, ParameterError, alternatives, did_you_mean
@@ -21,6 +20,8 @@ P = ParamSpec("P")
 Self = TypeVar("Self")
 NotNegative = Annotated[float, Ge(0)]
 """A number >= 0, such as a time [s] or the scale of noise."""
+Positive = Annotated[float, Gt(0)]
+"""A number > 0."""
 Count = Annotated[int, Ge(0)]
 """How many there are of something."""
 Extended = Annotated[float, Infinite()]
@@ -65,12 +66,45 @@ NEAR = 0.8
 
 
 class WithParameters:
-    """A module whose parameters may be set later; it warns if one is set under a misspelt name."""
+    """A module whose parameters may be set later, and are checked then, too; it warns if one is set under a misspelt name."""
+
+    _unchecked: ClassVar[set[str]]
+    """The names of attributes of the class that are neither parameters nor similar to one."""
+    _parameters: ClassVar[frozenset[str]]
+    """The names of the parameters that the library's own classes declare: those in the bodies of classes hold for a modeller's classes
+    derived from them, too; those of `__init__` unless a modeller's class has its own."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        library = [base for base in cls.__mro__ if issubclass(base, WithParameters) and base.__module__.startswith("actr3d.")]
+        names = {name for base in library for name in inspect.get_annotations(base)}
+        if getattr(cls.__init__, "__module__", "").startswith("actr3d."):
+            several = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+            names |= {name for name, one in inspect.signature(cls.__init__).parameters.items() if one.kind not in several}
+        cls._unchecked = set()
+        cls._parameters = frozenset(name for name in names - {"self"} if name[0] != "_")
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name not in self.__dict__:
-            warn_of_misspelling(self, name)
+        if name not in self._unchecked:
+            self._check_assignment(name, value)
         super().__setattr__(name, value)
+
+    def _check_assignment(self, name: str, value: Any) -> None:
+        """Checks a value for a parameter; warns about a new attribute whose name is similar to that of a parameter: it has no effect.
+
+        Raises:
+            ParameterError: If the parameter cannot have that value.
+        """
+        kind = type(self)
+        if name in self._parameters:
+            check_attribute(kind, name, value)
+        elif name[0] == "_" or hasattr(kind, name):
+            self._unchecked.add(name)
+        elif name not in self.__dict__:
+            if hint := misspelling_hint(name, self._settable()):
+                warn_modeller(f"{kind.__name__} has no parameter '{name}'{hint}")
+            else:
+                self._unchecked.add(name)
 
     def _settable(self) -> set[str]:
         """Returns the names that may be meant by a misspelt one: parameters and attributes; nothing for a modeller's own class,
@@ -95,20 +129,6 @@ def elsewhere(module: object) -> str:
 def settable_of(part: WithParameters) -> set[str]:
     """Returns the names that may be meant by a misspelt attribute of a part."""
     return part._settable()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
-
-
-def warn_of_misspelling(part: WithParameters, name: str) -> None:
-    """Warns about a new attribute whose name is similar to that of a parameter; it has no effect."""
-    if name[0] == "_":
-        return
-    hints = _HINTS.setdefault(type(part), {})
-    if name not in hints:
-        hints[name] = "" if hasattr(type(part), name) else misspelling_hint(name, settable_of(part))
-    if hints[name]:
-        warn_modeller(f"{type(part).__name__} has no parameter '{name}'{hints[name]}")
-
-
-_HINTS: WeakKeyDictionary[type, dict[str, str]] = WeakKeyDictionary()
 
 
 def misspelling_hint(name: str, known: set[str]) -> str:

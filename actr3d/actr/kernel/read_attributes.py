@@ -12,21 +12,16 @@ READ_OF_ITSELF: dict[type[Any], frozenset[str]] = {}
 """By class, the attributes that it reads of its own objects if a subclass defines them."""
 
 
-def reads(*names: str) -> Callable[[_Kind], _Kind]:
-    """Declares the attributes that a class reads of other objects, such as those of an environment: renaming one would change a model."""
+def reads(*names: str, of_itself: bool = False) -> Callable[[_Kind], _Kind]:
+    """Declares the attributes that a class reads of other objects, such as those of an environment: renaming one would change a model.
+
+    Args:
+        names: The attributes.
+        of_itself: Whether it reads them of its own objects instead, if a subclass defines them.
+    """
 
     def declared(kind: _Kind) -> _Kind:
-        READ[kind] = frozenset(names)
-        return kind
-
-    return declared
-
-
-def reads_of_itself(*names: str) -> Callable[[_Kind], _Kind]:
-    """Declares the attributes that a class reads of its own objects if a subclass defines them."""
-
-    def declared(kind: _Kind) -> _Kind:
-        READ_OF_ITSELF[kind] = frozenset(names)
+        (READ_OF_ITSELF if of_itself else READ)[kind] = frozenset(names)
         return kind
 
     return declared

@@ -7,8 +7,7 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from contextvars import ContextVar, Token
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Any, NoReturn, Protocol, Self
 from weakref import WeakSet
@@ -68,7 +67,7 @@ class RunLimits:
     recorder: Recorder | None = None
     """The recorder for what simulations do besides a trace of everything; None for none."""
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
-    """Returns the time of the latest run [us]."""
+    """Returns the time of the latest run [us]; `follow` sets it."""
     passing: Callable[[Any, int], object] | None = field(default=None, repr=False)
     """Called before the time of a run advances, after all events at that time: with the run's scheduler and the new time [us]. It may
     block the program, or end it with an `EndOfRun`. It returns True if a user has changed something: then the events up to the present
@@ -100,6 +99,16 @@ class RunLimits:
         """Returns the limits in force, if any."""
         return _CURRENT.get()
 
+    def inner(self, seed: int | str | None) -> RunLimits:
+        """Returns limits for a program that this program runs: the same ones, with a seed of their own."""
+        return replace(self, seed=seed)
+
+    def follow(self, clock: Callable[[], int]) -> None:
+        """Sets what returns the time of the latest run [us], also for the limits outside these."""
+        self.clock = clock
+        if self._outer is not None:
+            self._outer.follow(clock)
+
     @property
     def program_seed(self) -> int | str:
         """The seed that was given, or drawn for this block."""
@@ -118,15 +127,15 @@ class RunLimits:
 
     # -- the end
 
-    @cached_property
+    @property
     def _until_us(self) -> int:
         """The end [us], where there is one."""
         return microseconds(self.until or 0, "until")
 
     @property
     def ended(self) -> bool:
-        """Whether the end has come: no run gets any more time."""
-        return self._ended
+        """Whether the end has come, of these limits or of those outside them: no run gets any more time."""
+        return self._ended or (self._outer is not None and self._outer.ended)
 
     def clip(self) -> int | None:
         """Returns the end of every run [us]; None if there is no end.

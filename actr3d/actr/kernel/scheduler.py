@@ -83,7 +83,7 @@ class Scheduler:
         self.in_lockstep = False
         """Whether a simulation advances the time tick by tick, and checks the limits itself."""
         if self.limits is not None:
-            self.limits.clock = lambda: self.now_us
+            self.limits.follow(lambda: self.now_us)
         self._ends = Ends()
         self.running = False
         """Whether a run is in progress."""
@@ -232,7 +232,7 @@ class Scheduler:
         return self._named.setdefault(name, Trigger(name))
 
     def take_over(self, other: Scheduler) -> None:
-        """Takes over everything from another scheduler: its events, its waiting events by name, and the calls added by other threads."""
+        """Moves everything of another scheduler here: its events, its waiting events by name, and the calls added by other threads."""
         while other.queue.heap:
             time, priority, event = other.queue.take()
             if time < self.now_us:

@@ -156,7 +156,7 @@ def location(func: Callable[..., Any]) -> tuple[str, int]:
     return func.__code__.co_filename, func.__code__.co_firstlineno
 
 
-def place(func: Callable[..., Any]) -> str:
+def file_and_line(func: Callable[..., Any]) -> str:
     """Returns `file:line` of a function's definition."""
     return "{}:{}".format(*location(func))
 

@@ -80,6 +80,12 @@ def lineage(part: TreeNode) -> Iterator[Any]:
             break
 
 
+def environment_of(module: TreeNode) -> Any:
+    """Returns the model that contains a module's agent; None if there is none."""
+    agent: Any = module.__dict__.get("parent")
+    return None if agent is None else agent.parent
+
+
 def subtree(part: TreeNode) -> Iterator[Any]:
     """Yields a part and everything below it."""
     yield part

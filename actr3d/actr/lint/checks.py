@@ -65,7 +65,9 @@ def check_agent(system: ProductionSystem) -> Callable[[], None] | None:
 
 
 def check_classes(top: Model) -> None:
-    """Checks the methods that modellers have written in the classes of a tree's parts."""
+    """Checks the methods that modellers have written in the classes of a tree's parts, once per class; not within `unchecked`."""
+    if not _WANTED.get():
+        return
     for part in subtree(top):
         for klass in type(part).__mro__:
             if not is_modellers(klass) or klass in _CHECKED_CLASSES:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, cast
 
-from actr3d.actr.chunks.pattern import MISSING, Condition
+from actr3d.actr.chunks.pattern import MISSING, Condition, by_variable
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_value
 from actr3d.actr.kernel.source_code import function_node
 from actr3d.actr.kernel.tree import TreeNode, top_of
@@ -33,7 +33,7 @@ def check_variables(production: Production) -> None:
         return  # a function may bind any
     for condition in production.conditions:
         key = condition.key
-        needed = [key[1:]] if isinstance(key, str) and key[:1] == "?" else []
+        needed = [key[1:]] if by_variable(key) else []
         needed += [condition.value] if condition.op in ("same", "differs") else []
         for name in needed:
             if name not in bound:
@@ -49,7 +49,7 @@ def check_slots(production: Production) -> None:
     settled = {name: _check_kinds(production, name) for name in production.pattern_specs}
     for condition in production.conditions:
         key = condition.key
-        if condition.op in ("empty", "call") or (isinstance(key, str) and key[:1] == "?"):
+        if condition.op in ("empty", "call") or by_variable(key):
             continue
         target = production.context[condition.name or "self"]
         if isinstance(target, Buffer):

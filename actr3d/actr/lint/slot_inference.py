@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import Slot, parse_slots
+from actr3d.actr.chunks.pattern import by_variable
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.class_members import is_modellers
@@ -110,7 +111,7 @@ def _literal_slots(text: str) -> frozenset[Slot] | None:
             return None
         if isinstance(node, ast.ImportFrom) and (node.level or not _is_known(node.module or "")):
             return None
-    return None if any(isinstance(slot, str) and slot[:1] == "?" for slot in found) else frozenset(found)
+    return None if any(map(by_variable, found)) else frozenset(found)
 
 
 def _slots(text: str) -> list[Slot]:

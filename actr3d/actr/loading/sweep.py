@@ -139,8 +139,7 @@ def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
             name = label(source, chosen)
             print(path, f"{iteration}/{_iterations}", name)  # noqa: T201 - as the old one did
             outer = RunLimits.current()
-            seed = None if outer is None else outer.next_seed()
-            limits = RunLimits(seed=seed, until=None if outer is None else outer.until)
+            limits = RunLimits() if outer is None else outer.inner(outer.next_seed())
             restore = logs.begin()
             logs.log(data=True, screen=False, directory=str(path.with_suffix("") / _safe(name)))
             logs.LOG.locked = True

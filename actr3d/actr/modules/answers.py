@@ -18,11 +18,11 @@ def _traced_fields(kind: type[Any]) -> tuple[str, ...] | None:
     return tuple(field.name for field in fields(kind) if "not_traced" not in field.metadata)
 
 
-def own_answer(answer: Any) -> Any:
+def copied_answer(answer: Any) -> Any:
     """Returns an answer that an agent may change: lists and dicts are copies, as the same answer is used when the run goes back."""
     if type(answer) is dict:
-        return {key: own_answer(value) for key, value in cast("dict[Any, Any]", answer).items()}
-    return [own_answer(value) for value in cast("list[Any]", answer)] if type(answer) is list else answer
+        return {key: copied_answer(value) for key, value in cast("dict[Any, Any]", answer).items()}
+    return [copied_answer(value) for value in cast("list[Any]", answer)] if type(answer) is list else answer
 
 
 def plain_answer(answer: Any) -> Any:

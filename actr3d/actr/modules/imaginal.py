@@ -9,6 +9,7 @@ from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.noise import duration
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
 
@@ -27,7 +28,6 @@ class ImaginalModule(WithParameters, Model):
 
     @named_parameters
     def __init__(self, buffer: Buffer, delay: NotNegative | Callable[[], float] = 0.2, delay_sd: NotNegative | None = None) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self.busy = False
         self.delay = delay
@@ -37,7 +37,7 @@ class ImaginalModule(WithParameters, Model):
     def delay_time(self) -> float:
         """Returns the duration of the next change [s]."""
         time: float = cast("Any", self.delay)() if callable(self.delay) else self.delay
-        return time if self.delay_sd is None else max(0.0, self.random.gauss(time, self.delay_sd))
+        return duration(self.random, time, self.delay_sd)
 
     def set(self, chunk: Any) -> Iterator[float]:
         """Puts a new chunk into the buffer; its variables have the values that are bound now."""

@@ -9,6 +9,7 @@ from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
 from actr3d.actr.kernel.read_attributes import reads
+from actr3d.actr.kernel.tree import environment_of
 from actr3d.actr.modules.registry import module
 
 
@@ -25,7 +26,6 @@ class Motor(WithParameters, Model):
 
     @named_parameters
     def __init__(self) -> None:
-        Model.__init__(self)
         self.busy = False
 
     def press(self, key: Any) -> Iterator[float]:
@@ -53,7 +53,7 @@ class Motor(WithParameters, Model):
         Raises:
             AttributeError: If there is none, or it has no `key_pressed`.
         """
-        environment = self.parent and self.parent.parent
+        environment = environment_of(self)
         if not hasattr(environment, "key_pressed"):
             where = "the agent is in no environment" if environment is None else f"the environment '{environment.name}' has none"
             raise AttributeError(f"Motor '{self.name}' calls key_pressed(key) of the environment, but {where}")

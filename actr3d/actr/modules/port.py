@@ -98,7 +98,7 @@ class Embodiment:
         self.tick = tick
 
     def join(self, agent: Model) -> None:
-        """Gives an agent, and all ports below it, this body."""
+        """Connects an agent, and all ports below it, to this body."""
         agent.__dict__["_embodiment"] = self
 
 
@@ -219,7 +219,6 @@ class BodyPort(Port):
 
     @named_parameters
     def __init__(self, buffer: Any = None) -> None:
-        Model.__init__(self)
         self._buffer = buffer
         self._outstanding = 0
         self.busy = False

@@ -8,8 +8,10 @@ from typing import Any
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.noise import duration
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.read_attributes import reads
+from actr3d.actr.kernel.tree import environment_of
 from actr3d.actr.modules.registry import module
 
 
@@ -48,10 +50,7 @@ class SOSVision(WithParameters, Model):
         noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
         self._trace_request("request", pattern=pattern, noticed=noticed)
         self.busy = True
-        time = self.delay
-        if self.delay_sd is not None:
-            time = max(0, self.random.gauss(time, self.delay_sd))
-        yield time
+        yield duration(self.random, self.delay, self.delay_sd)
         self.busy = False
         seen = self.random.choice(noticed) if noticed else None
         if seen is None or not any(obj is seen for obj in self._objects()) or getattr(seen, "visible", True) == False:  # noqa: E712
@@ -61,7 +60,7 @@ class SOSVision(WithParameters, Model):
             self._buffer.set(seen)
 
     def _objects(self) -> list[Any]:
-        environment = self.parent and self.parent.parent
+        environment = environment_of(self)
         return list(environment.get_children()) if environment is not None else []
 
     def _notices(self, obj: Any) -> bool:

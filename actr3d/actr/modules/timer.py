@@ -6,8 +6,11 @@ from collections.abc import Iterator
 
 from actr3d.actr.kernel.events import Trigger
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import NotNegative, Positive, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
+
+SHORTEST = 1e-6
+"""The shortest pulse [s]: the step of the clock."""
 
 
 @module
@@ -23,8 +26,7 @@ class Timer(WithParameters, Model):
     """
 
     @named_parameters
-    def __init__(self, startpulse: NotNegative = 0.011, a: NotNegative = 1.1, b: NotNegative = 0.015) -> None:
-        Model.__init__(self)
+    def __init__(self, startpulse: Positive = 0.011, a: Positive = 1.1, b: NotNegative = 0.015) -> None:
         self.startpulse = startpulse
         self.a = a
         self.b = b
@@ -44,7 +46,7 @@ class Timer(WithParameters, Model):
         """Counts pulses without end."""
         while True:
             before = self._resets
-            yield self.t, self._restart
+            yield max(SHORTEST, self.t), self._restart
             if self._resets == before:
                 self.count += 1
-                self.t = max(0.0, self.random.gauss(self.a * self.t, self.a * self.t * self.b))
+                self.t = max(SHORTEST, self.random.gauss(self.a * self.t, self.a * self.t * self.b))

@@ -14,6 +14,7 @@ from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
 from actr3d.actr.kernel.read_attributes import reads
+from actr3d.actr.kernel.tree import environment_of
 from actr3d.actr.modules.registry import module
 
 
@@ -36,7 +37,6 @@ class Vision(WithParameters, Model):
 
     @named_parameters
     def __init__(self, visual: Buffer, location: Buffer) -> None:
-        Model.__init__(self)
         self._visual = visual
         self._location = location
         self.busy = False
@@ -63,7 +63,7 @@ class Vision(WithParameters, Model):
     @hook
     def environmentUpdate(self) -> Iterator[Any]:  # noqa: N802
         """Puts a new object's place into the empty location buffer, at every change of the environment."""
-        environment = self._environment()
+        environment = environment_of(self)
         if environment is None:
             return
         while True:
@@ -76,9 +76,6 @@ class Vision(WithParameters, Model):
             for obj in environment.get_children():
                 self.isNew(obj)
             yield environment.changes, self.lostTrack
-
-    def _environment(self) -> Model | None:
-        return self.parent.parent if self.parent is not None else None
 
     def _appears(self, obj: Any) -> bool:
         if not getattr(obj, "visible", True):
@@ -147,7 +144,7 @@ class Vision(WithParameters, Model):
         return Pattern(pattern, self.sch.bound)
 
     def _children_of_environment(self) -> list[Model]:
-        environment = self._environment()
+        environment = environment_of(self)
         return environment.get_children() if environment is not None else []
 
     def _visible(self) -> list[Any]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.events import AGAIN, Event
 from actr3d.actr.kernel.hooks import hook
-from actr3d.actr.kernel.noise import pick
+from actr3d.actr.kernel.noise import pick, total
 from actr3d.actr.kernel.parameters import Extended, NotNegative
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
@@ -29,12 +29,6 @@ class Weighed(NamedTuple):
     parts: list[list[float]]
     """What each module added, for each production; empty without modules."""
     threshold: float | None
-
-
-def _added(utility: float, parts: list[float]) -> float:
-    for part in parts:  # `sum` rounds differently from Python 3.12 on
-        utility += part
-    return utility
 
 
 class ACTR(ProductionSystem):
@@ -110,7 +104,7 @@ class ACTR(ProductionSystem):
             parts = [[utility] for utility in utilities]
         elif self._adaptors:
             parts = [[adaptor.utility(p) for adaptor in self._adaptors] for p in matching]
-            utilities = [_added(p.base_utility, of) for p, of in zip(matching, parts, strict=True)]
+            utilities = [total(of, p.base_utility) for p, of in zip(matching, parts, strict=True)]
         else:
             utilities = [p.base_utility for p in matching]
         best = max(utilities)
@@ -233,10 +227,7 @@ class ACTR(ProductionSystem):
     def get_activation(self, production: Production | str | None = None) -> Any:
         """Returns a production's utility, None for an unknown name; without a name, the utilities of all by name."""
         if isinstance(production, Production):
-            utility = production.base_utility
-            for adaptor in self._adaptors:
-                utility += adaptor.utility(production)
-            return utility
+            return total((adaptor.utility(production) for adaptor in self._adaptors), production.base_utility)
         if production is None:
             return {p.name: self.get_activation(p) for p in self._productions}
         return next((self.get_activation(p) for p in self._productions if p.name == production), None)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, cast
 
 from actr3d.actr.chunks.pattern import Bindings, conditions
+from actr3d.actr.kernel.model import profile_of
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.procedural.production import Production
@@ -158,7 +159,7 @@ class PMCompile(ProceduralSubModule):
         key = (pre, post, tuple(sorted(pre_bound.items())), tuple(sorted(post_bound.items())))
         known = self.compiled.get(key)
         if known is not None:
-            if self._profile is not None and self._profile.learn_compiled:
+            if profile_of(self).learn_compiled:
                 self._strengthen(known)
             return
         made = CompiledProduction(pre, post, len(self.compiled) + 1, self._kept(pre) or [], self.retrieve, pre_bound, post_bound)

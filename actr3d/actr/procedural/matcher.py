@@ -18,7 +18,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, as_text, plain_text
-from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, function_matches, get_attribute, is_empty, look_up, slot_named
+from actr3d.actr.chunks.pattern import (
+    MISSING,
+    Bindings,
+    Condition,
+    Missing,
+    by_variable,
+    function_matches,
+    get_attribute,
+    is_empty,
+    look_up,
+    slot_named,
+)
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_empty, plain_value, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tracing import UNWATCHED
@@ -53,7 +64,7 @@ class Matcher:
                 self._attempts[production] = attempt_for(self._remembering(production), self._context, self._reader)
         self._order = {production: number for number, production in enumerate(productions)}
         wanted = {
-            p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions
+            p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not by_variable(c.key)] for p in productions
         }
         spread: dict[MatchedPlace, set[str]] = {}
         for of in wanted.values():
@@ -156,10 +167,6 @@ class Matcher:
         return True
 
 
-def _by_variable(key: Any) -> bool:
-    return isinstance(key, str) and key[:1] == "?"
-
-
 # -- the code that tries one production
 
 Shape = tuple[str, str, int, Any, Any]
@@ -213,7 +220,7 @@ def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any], rea
         op, name, key, value = condition
         name = name or "self"
         target = context[name]
-        if op in ("call", "empty") or (isinstance(key, str) and key[:1] == "?"):
+        if op in ("call", "empty") or by_variable(key):
             shapes.append((op, "extra", len(extra), None, None))
             extra.append((condition, target))
         elif reads_chunk(target, key):

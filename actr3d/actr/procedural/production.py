@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from actr3d.actr.chunks.pattern import Bindings, conditions
 from actr3d.actr.kernel.scheduler import Scheduler
-from actr3d.actr.kernel.source_code import assigned_globals, function_node, has_file, location, place
+from actr3d.actr.kernel.source_code import assigned_globals, file_and_line, function_node, has_file, location
 from actr3d.actr.procedural.production_body import MAX_CODES, Body, Scope, compile_body
 from actr3d.actr.procedural.rebinding import sees_variables, stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
@@ -78,7 +78,7 @@ class Production:
     @property
     def place(self) -> str:
         """Where it is written: `file:line`."""
-        return place(self.original_func)
+        return file_and_line(self.original_func)
 
     @cached_property
     def node(self) -> ast.FunctionDef:

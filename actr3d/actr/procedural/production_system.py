@@ -18,7 +18,7 @@ from actr3d.actr.kernel.tree import lineage, path_of
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import Matcher
 from actr3d.actr.procedural.production import Production, defaults_of
-from actr3d.actr.procedural.utility import utility_modules
+from actr3d.actr.procedural.utility import trace_part, utility_modules
 from actr3d.actr.reasons import Explanation
 from actr3d.errors import ProductionException, did_you_mean
 from actr3d.trace import Trace
@@ -332,8 +332,7 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
     """Records what is known now of what each utility module adds to a production's utility."""
     for name, value in utility_parts(system, production).items():
         if value is not None:
-            data = {"production": production.name, "part": name, "value": value}
-            trace.emit(system.sch.now_us, path_of(system), "utility", data)
+            trace_part(trace, system, production, name, value)
 
 
 def refresh_attribute(system: ProductionSystem, part: Model, name: str) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, cast
 
 from actr3d.actr.kernel.hooks import hook
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.tree import path_of
@@ -70,7 +70,7 @@ class ProceduralSubModule(WithParameters, Model):
         super()._trace_change(trace, key, value)
         if key in self._decisive and trace.all and self.parent is not None:
             for production in _productions_of(self.parent):
-                _trace_part(trace, self, production, known_part(self, production))
+                trace_part(trace, self.parent, production, self.name, known_part(self, production))
 
     def _learned(self, prod: Any) -> None:
         """Records a production's utility after learning."""
@@ -108,12 +108,12 @@ def trace_learned(module: ProceduralSubModule, prod: Any) -> None:
     if trace is not None and trace.all and module.parent is not None:
         part = known_part(module, prod)
         if part is not None:
-            _trace_part(trace, module, prod, part)
+            trace_part(trace, module.parent, prod, module.name, part)
 
 
-def _trace_part(trace: Trace, module: ProceduralSubModule, prod: Any, part: float | None) -> None:
-    data = {"production": prod.name, "part": module.name, "value": part}
-    trace.emit(module.sch.now_us, path_of(cast("Model", module.parent)), "utility", data)
+def trace_part(trace: Trace, system: Model, prod: Any, part: str, value: float | None) -> None:
+    """Records a part of the utility of a system's production."""
+    trace.emit(system.sch.now_us, path_of(system), "utility", {"production": prod.name, "part": part, "value": value})
 
 
 class PMNoise(ProceduralSubModule):
@@ -280,7 +280,7 @@ class PMNew(RewardLearning):
     def reward(self, value: float) -> None:
         """Moves the utility of each production since the latest reward towards the reward minus the time since its choice."""
         now = self.now()
-        whole = self._profile is not None and self._profile.total_utility
+        whole = profile_of(self).total_utility
         for prod, chosen in self.history:
             present = prod.util + prod.base_utility if whole else prod.util
             prod.util += self.alpha * (value - (now - chosen) - present)

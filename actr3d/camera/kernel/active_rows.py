@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import NUMBER, Array
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
 class ActiveRows(NamedTuple):
@@ -33,14 +33,14 @@ def room_for_active_rows(things: int, rows: int) -> ActiveRows:
     )
 
 
-@compiled
+@inner_compiled
 def remove_all(active: ActiveRows) -> None:
     """Removes all items."""
     for row in range(len(active.starting)):
         active.starting[row] = -1
 
 
-@compiled
+@inner_compiled
 def add_item(active: ActiveRows, thing: int, first: int, last: int) -> None:
     """Adds an item from its first to its last row; does nothing if there are no rows."""
     if first <= last:
@@ -49,7 +49,7 @@ def add_item(active: ActiveRows, thing: int, first: int, last: int) -> None:
         active.ending[thing] = last
 
 
-@compiled
+@inner_compiled
 def update_active(active: ActiveRows, row: int, present: int) -> int:
     """Updates the active items from the row above to this row; returns their number."""
     kept = 0

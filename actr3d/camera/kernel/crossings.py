@@ -5,10 +5,10 @@ from __future__ import annotations
 from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, NEAR_SIDE, SAME_DEPTH, Array, Record
 from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.roots import add_quartic_roots, add_roots
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
-@compiled
+@inner_compiled
 def may_cover(other: Record, winner: Record, low: float, high: float) -> bool:
     """Checks whether a piece may be in front of another one somewhere between two tangents.
 
@@ -21,7 +21,7 @@ def may_cover(other: Record, winner: Record, low: float, high: float) -> bool:
     return above_low > below_low * (1.0 + SAME_DEPTH) or above_high > below_high * (1.0 + SAME_DEPTH)
 
 
-@compiled
+@inner_compiled
 def _straight(piece: Record, low: float, high: float, touching: bool) -> tuple[float, float]:
     """Returns the ends of a piece's chord, or of its tangent line in the middle: near sides curve down, far sides up."""
     if not touching:
@@ -33,7 +33,7 @@ def _straight(piece: Record, low: float, high: float, touching: bool) -> tuple[f
     return w - slope * (middle - low), w + slope * (high - middle)
 
 
-@compiled
+@inner_compiled
 def add_crossings(one: Record, other: Record, low: float, high: float, work: Array, cuts: Array, count: int) -> int:
     """Appends the tangents between `low` and `high` at which two pieces cross, and possibly some at which they do not.
 
@@ -60,7 +60,7 @@ def add_crossings(one: Record, other: Record, low: float, high: float, work: Arr
     return kept
 
 
-@compiled
+@inner_compiled
 def _line_and_conic(line: Record, conic: Record, middle: float, cuts: Array, count: int) -> int:
     """Inserts the line into the conic's equation, both expanded about the middle, which keeps precision."""
     w, w1 = nearness(line, middle), line.c1
@@ -74,7 +74,7 @@ def _line_and_conic(line: Record, conic: Record, middle: float, cuts: Array, cou
     return after
 
 
-@compiled
+@inner_compiled
 def _two_conics(one: Record, other: Record, middle: float, half: float, work: Array, cuts: Array, count: int) -> int:
     """Eliminates w from both equations: where they cross, w = n / m, and a n^2 - 2 b n m + c m^2 = 0, a quartic."""
     # Expanded about the middle, in units of half the stretch, and with w in units of its value on `one` there.

@@ -7,7 +7,7 @@ import math
 from actr3d.camera.kernel.dtypes import NEGLIGIBLE, SLIVER, Array, Record, Records
 from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.screen import screen_part
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 EDGES_AT_ONCE = 128
 
@@ -15,7 +15,7 @@ SURELY_WIDE = 1e-4
 """Extents wider than this are never rounding errors, even on the widest screen [tangent]."""
 
 
-@compiled
+@inner_compiled
 def goes_on(object: int, low: float, optics: Record, extents: Records, first: int, done: int) -> bool:
     """Checks whether the last extent of a row belongs to the given object and reaches up to a tangent, within the precision.
 
@@ -27,7 +27,7 @@ def goes_on(object: int, low: float, optics: Record, extents: Records, first: in
     return low - reached <= NEGLIGIBLE or _gap(reached, low, optics) <= max(optics.precision, SLIVER)
 
 
-@compiled
+@inner_compiled
 def without_sliver(optics: Record, extents: Records, first: int, done: int) -> int:
     """Returns the number of extents, without the last one if it is only a rounding error."""
     if done > first:
@@ -37,7 +37,7 @@ def without_sliver(optics: Record, extents: Records, first: int, done: int) -> i
     return done
 
 
-@compiled
+@inner_compiled
 def end_row(v: float, optics: Record, pieces: Records, extents: Records, first: int, done: int) -> int:
     """Stores what `finish` needs: the row's tangent as `y`, nearness as distances; returns the number of extents."""
     done = without_sliver(optics, extents, first, done)
@@ -48,7 +48,7 @@ def end_row(v: float, optics: Record, pieces: Records, extents: Records, first: 
     return done
 
 
-@compiled
+@inner_compiled
 def finish(optics: Record, extents: Records, count: int, edges: Array) -> None:
     """Converts tangents to screen coordinates and angles, and nearness to distances: for many edges at once, which is faster."""
     for start in range(0, count, EDGES_AT_ONCE // 2):
@@ -69,7 +69,7 @@ def finish(optics: Record, extents: Records, count: int, edges: Array) -> None:
             extent.y = (extent.row + 0.5) / optics.rows
 
 
-@compiled
+@inner_compiled
 def _measure(across: Array, upwards: Array, near: Array, count: int) -> None:
     """Replaces upward tangents by angles [degrees], and nearness by distances [m]."""
     for i in range(count):
@@ -82,14 +82,14 @@ def _measure(across: Array, upwards: Array, near: Array, count: int) -> None:
         upwards[i] = math.degrees(8.0) * eighth * _arc_tangent_part(eighth * eighth)
 
 
-@compiled
+@inner_compiled
 def _arc_tangent_part(s: float) -> float:
     """Returns `atan(x) / x` for `s = x^2` at full precision for angles up to 11.25 degrees: an unrolled series."""
     part = 1 / 13 - s * (1 / 15 - s * (1 / 17 - s * (1 / 19 - s / 21)))
     return 1.0 - s * (1 / 3 - s * (1 / 5 - s * (1 / 7 - s * (1 / 9 - s * (1 / 11 - s * part)))))
 
 
-@compiled
+@inner_compiled
 def _gap(low: float, high: float, optics: Record) -> float:
     """Returns the distance of two tangents on the screen."""
     return 0.5 * (screen_part(high, optics.right, optics.e2) - screen_part(low, optics.right, optics.e2))

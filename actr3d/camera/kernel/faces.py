@@ -6,10 +6,10 @@ import math
 
 from actr3d.camera.kernel.dtypes import LINE, NEGLIGIBLE, Array, Record, Records
 from actr3d.camera.kernel.screen import first_row, last_row
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
-@compiled
+@inner_compiled
 def face_rows(face: Array, corners: Array, one_sided: bool, optics: Record) -> tuple[int, int]:
     """Returns the first and last row that may meet a polygon; if there is none, the last is before the first.
 
@@ -39,7 +39,7 @@ def face_rows(face: Array, corners: Array, one_sided: bool, optics: Record) -> t
     return max(0, first_row(highest, optics)), min(optics.rows - 1, last_row(lowest, optics))
 
 
-@compiled
+@inner_compiled
 def _turned_away(face: Array, corners: Array) -> bool:
     """Checks whether a polygon is seen from behind; right, up, forward is a left-handed frame, hence the sign."""
     a, b, c = corners[face[0]], corners[face[1]], corners[face[2]]
@@ -48,7 +48,7 @@ def _turned_away(face: Array, corners: Array) -> bool:
     return (y1 * z2 - z1 * y2) * a[0] + (z1 * x2 - x1 * z2) * a[1] + (x1 * y2 - y1 * x2) * a[2] <= 0.0
 
 
-@compiled
+@inner_compiled
 def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Records, count: int) -> int:
     """Appends the piece that the row at the tangent v cuts from a polygon, if any; returns the new number of pieces.
 
@@ -74,7 +74,7 @@ def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Reco
     return _add_segment(x1, z1, x2, z2, optics, pieces, count)
 
 
-@compiled
+@inner_compiled
 def _add_segment(x1: float, z1: float, x2: float, z2: float, optics: Record, pieces: Records, count: int) -> int:
     """Appends the part of a segment in the row's plane that is in the field of view and beyond the near limit."""
     start, end = 0.0, 1.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from actr3d.camera.kernel.dtypes import LINE, Record, Records
 from actr3d.camera.kernel.pieces import nearness, root_of
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 HALVINGS = 5
 """The number of halvings in the search for the nearest point of a round piece."""
@@ -52,7 +52,7 @@ STRETCHES = np.dtype(
 arrays do not overlap, and can emit SIMD instructions that process four numbers at once."""
 
 
-@compiled
+@inner_compiled
 def note(stretches: Record, owner: int, piece: Record, low: float, high: float, level: float, extents: Records) -> None:
     """Stores that a piece is seen in an extent between two tangents."""
     if stretches.count == AT_ONCE:
@@ -77,7 +77,7 @@ def note(stretches: Record, owner: int, piece: Record, low: float, high: float, 
     stretches.c0[i], stretches.c1[i], stretches.c2[i] = piece.c0, piece.c1, piece.c2
 
 
-@compiled
+@inner_compiled
 def forget(stretches: Record, extents: int) -> None:
     """Removes the stretches of extents that were dropped: keeps those of the first `extents` extents."""
     while stretches.count > 0 and stretches.owner[stretches.count - 1] >= extents:
@@ -86,7 +86,7 @@ def forget(stretches: Record, extents: int) -> None:
         stretches.open -= 1
 
 
-@compiled
+@inner_compiled
 def find_nearest(stretches: Record, extents: Records) -> None:
     """Sets `xn` and `dn` of the extents (still a tangent and a nearness) from all stored stretches, and removes these."""
     for _ in range(HALVINGS):
@@ -109,7 +109,7 @@ def find_nearest(stretches: Record, extents: Records) -> None:
     stretches.count = stretches.open = 0
 
 
-@compiled
+@inner_compiled
 def _try_guesses(stretches: Record, count: int) -> None:
     """Computes the nearness of each guess, whether the guess is good enough, and otherwise which half has the nearest point."""
     for i in range(count):
@@ -124,7 +124,7 @@ def _try_guesses(stretches: Record, count: int) -> None:
         stretches.found[i] = 1.0 if abs(away) < FLAT or low >= high else 0.0
 
 
-@compiled
+@inner_compiled
 def _keep_open(stretches: Record) -> int:
     """Stores the results found, moves the other stretches to the front with a new guess, and returns their number."""
     kept = 0

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 MAX_OCCLUDERS = 8
 LARGE = 0.02
 """The minimum size of a face used as an occluder [part of the screen]."""
 
 
-@compiled
+@inner_compiled
 def offer(face: Array, corners: Array, optics: Record, occluders: Records, count: int) -> int:
     """Adds a face with four corners to the occluders if it is large and completely in front of the eye; returns their new number."""
     if count == MAX_OCCLUDERS:
@@ -42,7 +42,7 @@ def offer(face: Array, corners: Array, optics: Record, occluders: Records, count
     return count + 1
 
 
-@compiled
+@inner_compiled
 def hidden(place: Array, reach: float, occluders: Records, count: int) -> bool:
     """Checks whether a ball, given in the eye's frame, is completely behind one of the faces."""
     for i in range(count):
@@ -58,7 +58,7 @@ def hidden(place: Array, reach: float, occluders: Records, count: int) -> bool:
     return False
 
 
-@compiled
+@inner_compiled
 def _set_plane(plane: Array, x1: float, y1: float, z1: float, x2: float, y2: float, z2: float, sign: float) -> bool:
     """Sets the unit normal of the plane spanned by two directions; returns False if they span none."""
     plane[0], plane[1], plane[2] = sign * (y1 * z2 - z1 * y2), sign * (z1 * x2 - x1 * z2), sign * (x1 * y2 - y1 * x2)

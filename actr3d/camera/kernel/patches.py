@@ -8,13 +8,13 @@ from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, A
 from actr3d.camera.kernel.pieces import bound, nearness, sort_values, summit
 from actr3d.camera.kernel.roots import add_roots
 from actr3d.camera.kernel.screen import zero
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 SEEN, NO_PIECE, TO_CUT = 1, 0, -1
 """The states of a patch on a row: one whole piece, no piece, or to be cut."""
 
 
-@compiled
+@inner_compiled
 def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Records, count: int, cuts: Array) -> int:
     """Appends the pieces of a patch on the row at the tangent v; returns the new number of pieces.
 
@@ -40,7 +40,7 @@ def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Re
     return _add_parts(patch, v, optics, room[0], pieces, count, cuts)
 
 
-@compiled
+@inner_compiled
 def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array) -> int:
     """Checks whether a whole line or disc is seen, cut only by the ends of a disc and of the field of view."""
     low, high = -optics.right, optics.right
@@ -53,7 +53,7 @@ def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Arr
     return _seen_between(low, high, optics, line)
 
 
-@compiled
+@inner_compiled
 def _seen_between(low: float, high: float, optics: Record, line: Record) -> int:
     """Checks whether a line is seen between two tangents, and sets its ends and bounds."""
     if not high - low > NEGLIGIBLE:
@@ -68,7 +68,7 @@ def _seen_between(low: float, high: float, optics: Record, line: Record) -> int:
     return SEEN
 
 
-@compiled
+@inner_compiled
 def _whole_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
     """Checks whether the whole near side of a round surface is seen without a cut, and sets its ends and bounds.
 
@@ -90,7 +90,7 @@ def _whole_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: A
     return _within_slabs(patch, v, conic)
 
 
-@compiled
+@inner_compiled
 def _within_slabs(patch: Record, v: float, conic: Record) -> int:
     """Checks from its bounds whether a whole piece lies within the slabs of its patch."""
     whole = SEEN
@@ -106,7 +106,7 @@ def _within_slabs(patch: Record, v: float, conic: Record) -> int:
     return whole
 
 
-@compiled
+@inner_compiled
 def _add_parts(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array) -> int:
     """Appends the visible parts of a curve between cuts; returns the new number of pieces."""
     if curve.side == LINE:
@@ -124,7 +124,7 @@ def _add_parts(patch: Record, v: float, optics: Record, curve: Record, pieces: R
     return count
 
 
-@compiled
+@inner_compiled
 def _cut_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array) -> int:
     """Finds where a line crosses the horizon, the near limit, its slabs and its ball; returns the number of cuts."""
     c0, c1 = line.c0, line.c1
@@ -139,7 +139,7 @@ def _cut_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array
     return number
 
 
-@compiled
+@inner_compiled
 def _cut_disc(patch: Record, v: float, line: Record, cuts: Array, number: int) -> int:
     """Finds where a line enters and leaves the ball of its patch; returns the new number of cuts."""
     x, y, z, c0, c1 = patch.centre[0], patch.centre[1], patch.centre[2], line.c0, line.c1
@@ -151,14 +151,14 @@ def _cut_disc(patch: Record, v: float, line: Record, cuts: Array, number: int) -
     return add_roots(a, b, x0 * x0 + y0 * y0 + z0 * z0 - square * c0 * c0, cuts, number)
 
 
-@compiled
+@inner_compiled
 def _cut_silhouette(conic: Record, cuts: Array, number: int) -> int:
     """Finds the silhouette points of a conic, where near and far side meet; returns the new number of cuts."""
     a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
     return add_roots(b1 * b1 - a * c2, b0 * b1 - 0.5 * a * c1, b0 * b0 - a * c0, cuts, number)
 
 
-@compiled
+@inner_compiled
 def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
     """Finds the silhouette points of a conic, and where it crosses the near limit and its slab; returns the number of cuts."""
     a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
@@ -179,7 +179,7 @@ def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Arr
     return number
 
 
-@compiled
+@inner_compiled
 def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array, number: int) -> int:
     """Appends the visible parts of one side of a curve between its cuts; returns the new number of pieces."""
     going_on = False
@@ -200,7 +200,7 @@ def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Re
     return count
 
 
-@compiled
+@inner_compiled
 def _there(patch: Record, v: float, optics: Record, curve: Record, u: float) -> bool:
     """Checks whether the curve's point at u is on the patch and in front of the eye."""
     if curve.side != LINE:

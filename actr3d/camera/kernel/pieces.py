@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
-@compiled
+@inner_compiled
 def root_of(a: float, b: float, c: float, side: float) -> float:
     """Returns a root of `a w^2 - 2 b w + c`: the nearness of the near (1) or far (-1) side, without loss of precision."""
     root = math.sqrt(max(b * b - a * c, 0.0))
@@ -16,7 +16,7 @@ def root_of(a: float, b: float, c: float, side: float) -> float:
     return (b + side * root if straight else c) / (a if straight else b - side * root)
 
 
-@compiled
+@inner_compiled
 def nearness(piece: Record, u: float) -> float:
     """Returns 1 / depth of a piece at the tangent u [1/m]."""
     if piece.side == LINE:
@@ -24,7 +24,7 @@ def nearness(piece: Record, u: float) -> float:
     return root_of(piece.a, piece.b0 + piece.b1 * u, piece.c0 + u * (piece.c1 + u * piece.c2), piece.side)
 
 
-@compiled
+@inner_compiled
 def bound(piece: Record, floor: float, ceiling: float) -> None:
     """Sets the bounds of a piece's nearness: from its ends where these determine them, otherwise from bounds of the whole surface."""
     first, last = nearness(piece, piece.low), nearness(piece, piece.high)
@@ -35,7 +35,7 @@ def bound(piece: Record, floor: float, ceiling: float) -> None:
         piece.floor = floor
 
 
-@compiled
+@inner_compiled
 def summit(piece: Record) -> float:
     """Returns the nearness [1/m] of the nearest point of a conic on its row. There, both solutions for u are equal."""
     a = piece.a * piece.c2 - piece.b1 * piece.b1
@@ -46,7 +46,7 @@ def summit(piece: Record) -> float:
     return (b + math.sqrt(discriminant)) / a * (1.0 + NEGLIGIBLE)
 
 
-@compiled
+@inner_compiled
 def sort_values(values: Array, count: int) -> None:
     """Sorts the first `count` values by insertion, which is fast for a few dozen values."""
     gap = 1
@@ -62,7 +62,7 @@ def sort_values(values: Array, count: int) -> None:
         gap //= 3
 
 
-@compiled
+@inner_compiled
 def sort_by_start(order: Array, starts: Array, pieces: Records, count: int) -> None:
     """Fills `order` with the numbers of the first `count` pieces, leftmost first, and `starts` with their first tangents.
 

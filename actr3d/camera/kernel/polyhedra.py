@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import Array
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 HFIELD_EXTRA_CORNERS = 4
 """The number of corners of a height field's base, stored after those of its surface and their projections at height 0."""
 
 
-@compiled
+@inner_compiled
 def set_box(size: Array, local: Array) -> None:
     """Writes the 8 corners of a box: bit 0 of a corner's number is the sign of x, bit 1 of y, bit 2 of z."""
     for i in range(8):
@@ -20,7 +20,7 @@ def set_box(size: Array, local: Array) -> None:
         local[i, 2] = size[2] if i & 4 else -size[2]
 
 
-@compiled
+@inner_compiled
 def set_hfield(size: Array, heights: Array, rows: int, columns: int, local: Array) -> None:
     """Writes the corners of a height field: those of its surface row by row, the same at height 0, and those of its base.
 
@@ -45,13 +45,13 @@ def set_hfield(size: Array, heights: Array, rows: int, columns: int, local: Arra
         corner[2] = -size[3]
 
 
-@compiled
+@inner_compiled
 def hfield_reach(size: Array) -> float:
     """Returns the radius of the bounding ball of a height field about its centre [m]."""
     return math.hypot(math.hypot(size[0], size[1]), max(size[2], size[3]))
 
 
-@compiled
+@inner_compiled
 def box_distance(size: Array, place: Array, turn: Array) -> float:
     """Returns the distance from the eye to a box [m], 0 inside it."""
     square = 0.0
@@ -62,7 +62,7 @@ def box_distance(size: Array, place: Array, turn: Array) -> float:
     return math.sqrt(square)
 
 
-@compiled
+@inner_compiled
 def place_corners(local: Array, place: Array, turn: Array, corners: Array) -> None:
     """Transforms points from a geom's frame to the eye's frame [m]; as many as fit into the output."""
     for i in range(len(corners)):

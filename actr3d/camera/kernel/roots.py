@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import Array
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
-@compiled
+@inner_compiled
 def add_roots(a: float, b: float, c: float, roots: Array, count: int) -> int:
     """Appends the real roots of `a x^2 + 2 b x + c`; returns the new number of roots."""
     discriminant = b * b - a * c
@@ -25,7 +25,7 @@ def add_roots(a: float, b: float, c: float, roots: Array, count: int) -> int:
     return count + 2
 
 
-@compiled
+@inner_compiled
 def _value(coefficients: Array, degree: int, x: float) -> float:
     value = coefficients[degree]
     for i in range(degree - 1, -1, -1):
@@ -33,7 +33,7 @@ def _value(coefficients: Array, degree: int, x: float) -> float:
     return value
 
 
-@compiled
+@inner_compiled
 def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, high: float, rising: bool) -> float:
     """Returns the single root of a polynomial in an interval with a sign change: Newton steps, and bisection if one leaves it."""
     x = 0.5 * (low + high)
@@ -51,7 +51,7 @@ def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, h
     return x
 
 
-@compiled
+@inner_compiled
 def add_quartic_roots(quartic: Array, work: Array, roots: Array, count: int) -> int:
     """Appends the roots in -1 ... 1 of a polynomial and of its derivative; returns the new number of roots.
 

@@ -18,7 +18,7 @@ from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent, zero
 from actr3d.camera.kernel.upper_envelope import Row, trace_row
-from actr3d.jit import compiled, kept
+from actr3d.jit import compile_cached, inner_compiled
 
 MAX_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""
@@ -38,19 +38,19 @@ def scan() -> Scan:
     """
     scene_setter()
     row_tracer()
-    return kept(_scan, SOURCES)
+    return compile_cached(_scan, SOURCES)
 
 
 @cache
 def scene_setter() -> SetScene:
     """Returns the first half of `scan`, compiled: it finds what may be in view."""
-    return kept(set_scene, SOURCES)
+    return compile_cached(set_scene, SOURCES)
 
 
 @cache
 def row_tracer() -> TraceRows:
     """Returns the second half of `scan`, compiled: it traces the rows of what may be in view."""
-    return kept(_trace_rows, SOURCES)
+    return compile_cached(_trace_rows, SOURCES)
 
 
 def _scan(
@@ -88,7 +88,7 @@ def _trace_rows(eye: Array, constants: Array, topology: Topology, scene: EyeScen
     return done
 
 
-@compiled
+@inner_compiled
 def _add_pieces(v: float, optics: Record, topology: Topology, scene: EyeScene, present: int, row: Row) -> tuple[int, int]:
     """Writes the pieces of all surfaces on a row; returns the number of pieces, and the number of surfaces without any."""
     count, aside = zero(), zero()
@@ -110,7 +110,7 @@ def _add_pieces(v: float, optics: Record, topology: Topology, scene: EyeScene, p
     return count, aside
 
 
-@compiled
+@inner_compiled
 def _order_surfaces(row: Row, pieces: int, scene: EyeScene, aside: int) -> None:
     """Sorts the surfaces by their first pieces: on the next row, nearly everything is then already in order."""
     count = zero()
@@ -124,7 +124,7 @@ def _order_surfaces(row: Row, pieces: int, scene: EyeScene, aside: int) -> None:
         count += 1
 
 
-@compiled
+@inner_compiled
 def _add_range(v: float, optics: Record, row: Row, count: int) -> int:
     """Appends the end of the eye's range, a ball seen from inside; returns the new number of pieces."""
     if not math.isfinite(optics.range):
@@ -139,7 +139,7 @@ def _add_range(v: float, optics: Record, row: Row, count: int) -> int:
     return count + 1
 
 
-@compiled
+@inner_compiled
 def _label(number: int, labels: Array, extents: Records, first: int, done: int) -> None:
     """Writes row and labels; an object that was never seen before gets the next label."""
     for i in range(first, done):

@@ -14,7 +14,7 @@ from actr3d.camera.kernel.occluders import LARGE, MAX_OCCLUDERS, hidden, offer
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
 from actr3d.camera.kernel.screen import in_view, zero
 from actr3d.camera.kernel.solids import add_patches, reach_of
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
 class Geoms(NamedTuple):
@@ -126,14 +126,14 @@ def set_scene(eye: Array, place: Array, turn: Array, constants: Array, geoms: Ge
     return 0
 
 
-@compiled
+@inner_compiled
 def _is_large(size: Array, place: Array, eye: Array) -> bool:
     """Checks whether a box looks large from the eye."""
     x, y, z = place[0] - eye[3, 0], place[1] - eye[3, 1], place[2] - eye[3, 2]
     return _square(size) > LARGE * (x * x + y * y + z * z)
 
 
-@compiled
+@inner_compiled
 def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
     """Returns the radius of the bounding ball of a geom about its centre [m]."""
     kind, size = topology.kind[geom], geoms.size[geom]
@@ -146,7 +146,7 @@ def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
     return reach_of(kind, size)
 
 
-@compiled
+@inner_compiled
 def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics: Record, scene: EyeScene, count: int) -> int:
     """Appends the patches of a geom that is round or a plane; returns the new number of patches."""
     kind, place, before = topology.kind[geom], scene.places[geom], count
@@ -159,7 +159,7 @@ def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics
     return count
 
 
-@compiled
+@inner_compiled
 def _visible(geom: int, geoms: Geoms, topology: Topology) -> bool:
     """Checks whether a geom can be seen at all: as with MuJoCo's rays, fully transparent geoms cannot."""
     if topology.objects[geom] == UNSEEN or not topology.groups[min(max(geoms.group[geom], 0), 5)]:
@@ -169,7 +169,7 @@ def _visible(geom: int, geoms: Geoms, topology: Topology) -> bool:
     return alpha != 0.0
 
 
-@compiled
+@inner_compiled
 def _set_pose(eye: Array, place: Array, turn: Array, its_place: Array, its_turn: Array) -> bool:
     """Transforms a pose to the eye's frame; returns whether it is finite."""
     total = 0.0
@@ -183,12 +183,12 @@ def _set_pose(eye: Array, place: Array, turn: Array, its_place: Array, its_turn:
     return math.isfinite(total)
 
 
-@compiled
+@inner_compiled
 def _square(vector: Array) -> float:
     return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
 
 
-@compiled
+@inner_compiled
 def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record, scene: EyeScene, occluders: int) -> int:
     """Transforms the corners of a geom, and adds its faces at the rows they begin on; returns the new number of occluders."""
     kind, source, size = topology.kind[geom], topology.source[geom], geoms.size[geom]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import Array, Record
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
-@compiled
+@inner_compiled
 def screen_part(tangent: float, most: float, e2: float) -> float:
     """Returns a tangent as a part of half the screen, from -1 to 1.
 
@@ -20,7 +20,7 @@ def screen_part(tangent: float, most: float, e2: float) -> float:
     return math.copysign(math.log1p(math.atan(abs(tangent)) / e2) / math.log1p(math.atan(most) / e2), tangent)
 
 
-@compiled
+@inner_compiled
 def tangent_at(part: float, most: float, e2: float) -> float:
     """Returns the tangent at a part of half the screen; the inverse of `screen_part`."""
     if e2 == 0.0:
@@ -29,31 +29,31 @@ def tangent_at(part: float, most: float, e2: float) -> float:
     return math.copysign(math.tan(e2 * math.expm1(abs(part) * span)), part)
 
 
-@compiled
+@inner_compiled
 def row_tangent(row: float, optics: Record) -> float:
     """Returns the upward tangent of the middle of a scan line."""
     return tangent_at(1.0 - (2.0 * row + 1.0) / optics.rows, optics.top, optics.e2)
 
 
-@compiled
+@inner_compiled
 def row_at(v: float, optics: Record) -> float:
     """Returns the row coordinate of an upward tangent: 0 at the middle of the topmost scan line."""
     return 0.5 * (optics.rows * (1.0 - screen_part(v, optics.top, optics.e2)) - 1.0)
 
 
-@compiled
+@inner_compiled
 def first_row(v: float, optics: Record) -> int:
     """Returns the topmost row that may be at or below the tangent v."""
     return math.ceil(row_at(min(v, optics.top), optics) - 1e-6)
 
 
-@compiled
+@inner_compiled
 def last_row(v: float, optics: Record) -> int:
     """Returns the lowest row that may be at or above the tangent v."""
     return math.floor(row_at(max(v, -optics.top), optics) + 1e-6)
 
 
-@compiled
+@inner_compiled
 def in_view(place: Array, reach: float, optics: Record) -> bool:
     """Checks whether a ball, given in the eye's frame, may be in the field of view and in range."""
     x, y, z = abs(place[0]), abs(place[1]), place[2]
@@ -63,7 +63,7 @@ def in_view(place: Array, reach: float, optics: Record) -> bool:
     return x - right * z <= reach * math.sqrt(1.0 + right * right) and y - top * z <= reach * math.sqrt(1.0 + top * top)
 
 
-@compiled
+@inner_compiled
 def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optics: Record, joined: bool) -> None:
     """Sets the rows on which an ellipsoid is seen, and bounds of its nearness; exact if it is completely in front of the eye.
 
@@ -93,7 +93,7 @@ def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optic
         patch.first_row, patch.last_row, patch.floor, patch.ceiling = first, last, floor, ceiling
 
 
-@compiled
+@inner_compiled
 def zero() -> int:
     """Returns 0 as a variable: a constant argument would make numba compile every called function once more."""
     return int(0.0)

@@ -6,10 +6,10 @@ import math
 
 from actr3d.camera.kernel.dtypes import CAPSULE, CYLINDER, ELLIPSOID, PLANE, Array, Record, Records
 from actr3d.camera.kernel.screen import set_rows
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 
-@compiled
+@inner_compiled
 def reach_of(kind: int, size: Array) -> float:
     """Returns the radius of the bounding ball of a geom about its centre [m], infinite for endless planes.
 
@@ -28,7 +28,7 @@ def reach_of(kind: int, size: Array) -> float:
     return size[0]
 
 
-@compiled
+@inner_compiled
 def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Records, count: int) -> int:
     """Appends the patches of one geom; returns the new number of patches.
 
@@ -63,13 +63,13 @@ def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, o
     return count
 
 
-@compiled
+@inner_compiled
 def _along(turn: Array, place: Array) -> float:
     """Returns the coordinate of a position along a geom's third axis [m]."""
     return turn[0, 2] * place[0] + turn[1, 2] * place[1] + turn[2, 2] * place[2]
 
 
-@compiled
+@inner_compiled
 def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z: float) -> None:
     """Sets a patch to an ellipsoid with the given half axes (infinite for a tube): (p - c) Q (p - c) = 1, where c is its centre."""
     patch.flat, patch.slabs, patch.radius = 0, 0, 0.0
@@ -87,7 +87,7 @@ def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z
     patch.a = a
 
 
-@compiled
+@inner_compiled
 def _set_flat(patch: Record, place: Array, turn: Array) -> None:
     """Sets a patch to a plane through a position, normal to a geom's third axis."""
     patch.flat, patch.slabs, patch.radius = 1, 0, 0.0
@@ -96,7 +96,7 @@ def _set_flat(patch: Record, place: Array, turn: Array) -> None:
     patch.k = _along(turn, place)
 
 
-@compiled
+@inner_compiled
 def _add_slab(patch: Record, turn: Array, axis: int, low: float, high: float) -> None:
     """Bounds a patch by two planes normal to an axis of its geom."""
     number = patch.slabs
@@ -106,7 +106,7 @@ def _add_slab(patch: Record, turn: Array, axis: int, low: float, high: float) ->
     patch.slabs = number + 1
 
 
-@compiled
+@inner_compiled
 def _add_plane(size: Array, place: Array, turn: Array, optics: Record, patches: Records, count: int) -> int:
     """Appends a plane, which is seen from its front only."""
     patch = patches[count]
@@ -122,7 +122,7 @@ def _add_plane(size: Array, place: Array, turn: Array, optics: Record, patches: 
     return count + 1
 
 
-@compiled
+@inner_compiled
 def _add_tube(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Records, count: int) -> int:
     """Appends the side of a cylinder or capsule, and its two ends: discs, if they can be seen, or hemispheres."""
     middle, side, radius = _along(turn, place), patches[count], size[0]

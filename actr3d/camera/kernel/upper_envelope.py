@@ -13,7 +13,7 @@ from actr3d.camera.kernel.extents import EDGES_AT_ONCE, end_row, goes_on, withou
 from actr3d.camera.kernel.nearest import STRETCHES, forget, note
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 from actr3d.camera.kernel.screen import zero
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 MAX_CUTS = 400
 """The capacity of the stack of stretches; two pieces cross at most four times, so only rounding errors could come near it."""
@@ -66,7 +66,7 @@ def room_for(pieces: int, places: Array, reaches: Array) -> Row:
     )
 
 
-@compiled
+@inner_compiled
 def trace_row(v: float, level: float, optics: Record, row: Row, count: int, extents: Records, first: int) -> int:
     """Appends the extents of one row; returns the new number of extents.
 
@@ -106,7 +106,7 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
         present = kept
 
 
-@compiled
+@inner_compiled
 def _activate(start: float, row: Row, count: int, processed: int, present: int, floor: float) -> tuple[int, int]:
     """Activates the pieces that begin at a tangent, and skips those that one active piece hides completely.
 
@@ -133,7 +133,7 @@ def _activate(start: float, row: Row, count: int, processed: int, present: int, 
     return processed, present
 
 
-@compiled
+@inner_compiled
 def _hidden(piece: Record, row: Row, present: int) -> bool:
     """Checks whether an active piece is in front of all of a piece that begins now or later."""
     high, ceiling = piece.high, piece.ceiling
@@ -144,7 +144,7 @@ def _hidden(piece: Record, row: Row, present: int) -> bool:
     return False
 
 
-@compiled
+@inner_compiled
 def _front(row: Row, present: int) -> tuple[int, int, float]:
     """Finds the piece whose farthest point is nearest, and its rivals: all pieces (itself included) not completely behind it.
 
@@ -165,7 +165,7 @@ def _front(row: Row, present: int) -> tuple[int, int, float]:
     return front, rivals, end
 
 
-@compiled
+@inner_compiled
 def _activate_behind(end: float, row: Row, count: int, processed: int, present: int, front: int) -> tuple[int, int, float]:
     """Processes the pieces that begin before a tangent completely behind the front piece; activates those that end after the front piece.
 
@@ -184,7 +184,7 @@ def _activate_behind(end: float, row: Row, count: int, processed: int, present: 
     return processed, present, end
 
 
-@compiled
+@inner_compiled
 def _trace_stretch(
     low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
 ) -> int:
@@ -211,7 +211,7 @@ def _trace_stretch(
     return done
 
 
-@compiled
+@inner_compiled
 def _append_stretch(
     winner: int, low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
 ) -> int:
@@ -238,7 +238,7 @@ def _append_stretch(
     return done
 
 
-@compiled
+@inner_compiled
 def _winner(u: float, row: Row, rivals: int) -> int:
     """Returns the number of the rival nearest at a tangent; if several are equally near, the one of the nearest geom."""
     winner = row.rivals[0]
@@ -254,7 +254,7 @@ def _winner(u: float, row: Row, rivals: int) -> int:
     return winner
 
 
-@compiled
+@inner_compiled
 def _precedes(places: Array, one: int, other: int) -> bool:
     """Checks whether a geom's centre is nearer than another's, or if equal, further to the left or down.
 
@@ -270,7 +270,7 @@ def _precedes(places: Array, one: int, other: int) -> bool:
     return a[1] < b[1] or (a[1] == b[1] and one < other)
 
 
-@compiled
+@inner_compiled
 def _cuts(winner: int, low: float, high: float, row: Row, rivals: int) -> int:
     """Finds where rivals may come in front of the winner between two tangents; returns the number of cuts."""
     best, number = row.pieces[winner], zero()
@@ -283,7 +283,7 @@ def _cuts(winner: int, low: float, high: float, row: Row, rivals: int) -> int:
     return number
 
 
-@compiled
+@inner_compiled
 def _may_meet(row: Row, one: int, other: int) -> bool:
     """Checks whether the bounding balls of two geoms intersect: pieces of separate geoms never cross."""
     a, b, reach = row.places[one], row.places[other], row.reaches[one] + row.reaches[other]
@@ -291,7 +291,7 @@ def _may_meet(row: Row, one: int, other: int) -> bool:
     return x * x + y * y + z * z <= reach * reach * (1.0 + SAME_DEPTH)
 
 
-@compiled
+@inner_compiled
 def _nearest_of(winner: int, u: float, row: Row, rivals: int) -> int:
     """Returns the number of the piece nearest at a tangent, among those of the winner's object."""
     best, object = nearness(row.pieces[winner], u), row.pieces[winner].object

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import actr3d.world.kernel
-from actr3d.jit import kept
+from actr3d.jit import compile_cached
 from actr3d.world.kernel import BOX, SPHERE, Array, extent
 
 END, DURATION, BEFORE, ANGLE, LOGGED, TURNED, ENTERED, LEFT, RIGHT = range(9)
@@ -32,7 +32,7 @@ def take_sample() -> Callable[..., float]:
 
     It returns the distance of the axis before the wall [m].
     """
-    return kept(_take_sample, Path(__file__))
+    return compile_cached(_take_sample, Path(__file__))
 
 
 def _take_sample(
@@ -78,7 +78,7 @@ def least_distances() -> Callable[..., None]:
     Its arguments are: the geoms (n,); the types, sizes, positions and rotations of all geoms as in MuJoCo, and the radii of the balls
     around them; the position (3,), rotation (9,) and size (3,) of the box; and room for the ordered geoms (n,) and their bounds (n,).
     """
-    return kept(_least_distances, Path(__file__), Path(actr3d.world.kernel.__file__))
+    return compile_cached(_least_distances, Path(__file__), Path(actr3d.world.kernel.__file__))
 
 
 def _least_distances(

@@ -11,7 +11,7 @@ from typing import TypeAlias
 from actr3d.camera.kernel import SOURCES
 from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.camera.kernel.screen import row_tangent, tangent_at
-from actr3d.jit import compiled, kept
+from actr3d.jit import compile_cached, inner_compiled
 from actr3d.vision.kernel.gaps import find_gaps, link_gaps
 from actr3d.vision.kernel.openings import set_openings
 from actr3d.vision.kernel.surfaces import set_surfaces
@@ -28,7 +28,7 @@ def gaps() -> Gaps:
     opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings:
     `(gaps, 0)` if gaps lack room; if openings do, none is written.
     """
-    return kept(_gaps, SOURCES, Path(__file__).parent)
+    return compile_cached(_gaps, SOURCES, Path(__file__).parent)
 
 
 @cache
@@ -36,7 +36,7 @@ def surfaces() -> Surfaces:
     """Returns the function that finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
     and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
     """
-    return kept(_surfaces, SOURCES, Path(__file__).parent)
+    return compile_cached(_surfaces, SOURCES, Path(__file__).parent)
 
 
 def _gaps(
@@ -45,7 +45,7 @@ def _gaps(
     return _find(extents, optics[0], axes, step, apart, points, gaps, openings)
 
 
-@compiled
+@inner_compiled
 def _find(
     extents: Records, optics: Record, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
 ) -> tuple[int, int]:
@@ -64,7 +64,7 @@ def _surfaces(extents: Records, optics: Array, axes: Array, bearing: float, poin
     return set_surfaces(extents, points, bearing, surfaces)
 
 
-@compiled
+@inner_compiled
 def set_points(extents: Records, optics: Record, axes: Array, points: Array) -> None:
     """Writes the positions of each extent's edges and nearest point: ahead, left, up and deep along the line of sight [m], `(n, 3, 4)`.
 

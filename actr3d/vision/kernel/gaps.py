@@ -8,7 +8,7 @@ import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.camera.kernel.screen import row_tangent
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 NARROWEST = 1e-6
 """Fraction of the screen's width below which there is no gap: edges that touch."""
@@ -35,7 +35,7 @@ GAP = np.dtype(
 """A gap on one row."""
 
 
-@compiled
+@inner_compiled
 def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: float, gaps: Records) -> int:
     """Writes all gaps, by rows; returns their number, including those without room.
 
@@ -65,7 +65,7 @@ def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: 
     return count
 
 
-@compiled
+@inner_compiled
 def measure(points: Array, gaps: Records, number: int) -> None:
     """Sets how wide a gap is, in the line of what bounds it, and how far it is free behind.
 
@@ -103,7 +103,7 @@ def measure(points: Array, gaps: Records, number: int) -> None:
     gap.deep = max(0.0, deep - max(near_left, near_right))
 
 
-@compiled
+@inner_compiled
 def _set_levels(points: Array, gap: Record, optics: Record, up: float) -> None:
     """Sets where the row of a gap ends above and below at each of its edges, half way to the next rows."""
     here = row_tangent(gap.row, optics)
@@ -113,7 +113,7 @@ def _set_levels(points: Array, gap: Record, optics: Record, up: float) -> None:
         gap.lows[side] = point[2] + point[3] * up * (row_tangent(gap.row + 0.5, optics) - here)
 
 
-@compiled
+@inner_compiled
 def _is_front(start: Array, end: Array, one: Array, other: Array) -> bool:
     """Returns whether no part of a gap's boundary lies before the line between two of its points, as seen from the eye."""
     eye = start[0] * end[1] - start[1] * end[0]
@@ -123,13 +123,13 @@ def _is_front(start: Array, end: Array, one: Array, other: Array) -> bool:
     return _beyond(one, start, end) * math.copysign(1.0, -eye) >= least and _beyond(other, start, end) * math.copysign(1.0, -eye) >= least
 
 
-@compiled
+@inner_compiled
 def _beyond(point: Array, start: Array, end: Array) -> float:
     """Returns how far a point lies to the left of the line between two others, times the line's length [m²]."""
     return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
 
 
-@compiled
+@inner_compiled
 def link_gaps(extents: Records, points: Array, gaps: Records, count: int, apart: float) -> int:
     """Joins gaps of neighbouring rows whose edges are no farther apart than `apart` [m]; returns how many openings there are.
 
@@ -166,14 +166,14 @@ def link_gaps(extents: Records, points: Array, gaps: Records, count: int, apart:
     return openings
 
 
-@compiled
+@inner_compiled
 def _apart(one: Array, other: Array) -> float:
     """Returns how far two points are apart on the ground [m]."""
     x, y = one[0] - other[0], one[1] - other[1]
     return math.sqrt(x * x + y * y)
 
 
-@compiled
+@inner_compiled
 def _taken(gaps: Records, first: int, end: int, before: int) -> bool:
     """Returns whether a gap of the row from `first` to `end` continues one above."""
     for i in range(first, end):  # noqa: SIM110 - compiled

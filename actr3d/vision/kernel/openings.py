@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 from actr3d.vision.kernel.gaps import THICKEST
 
 OPENING = np.dtype(
@@ -31,7 +31,7 @@ OPENING = np.dtype(
 )
 
 
-@compiled
+@inner_compiled
 def set_openings(extents: Records, points: Array, gaps: Records, count: int, rows: int, openings: Records) -> None:
     """Writes each opening: the largest upright rectangle that fits between the edges of its gaps.
 
@@ -65,7 +65,7 @@ def set_openings(extents: Records, points: Array, gaps: Records, count: int, row
         _finish(extents, points, gaps, rows, openings[number])
 
 
-@compiled
+@inner_compiled
 def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: Record) -> None:
     """Writes what follows from the first and the last gap of an opening."""
     first, last = gaps[opening.first], gaps[opening.last]
@@ -88,7 +88,7 @@ def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: 
     opening.below = _bound(extents, last, last.row + 1)
 
 
-@compiled
+@inner_compiled
 def _end(extents: Records, points: Array, gap: Record, row: int, levels: Array, cut: bool, sign: float) -> float:
     """Returns the height at which an opening ends above (`sign` 1) or below (-1), above the eye [m].
 
@@ -114,7 +114,7 @@ def _end(extents: Records, points: Array, gap: Record, row: int, levels: Array, 
     return sign * (other if left else one)
 
 
-@compiled
+@inner_compiled
 def _goes_on(extents: Records, points: Array, number: int, side: int, row: int) -> bool:
     """Returns whether an edge of an extent goes on in the next row: of the same thing, within a wall's thickness on the ground."""
     step = -1 if row < extents[number].row else 1
@@ -128,7 +128,7 @@ def _goes_on(extents: Records, points: Array, number: int, side: int, row: int) 
     return False
 
 
-@compiled
+@inner_compiled
 def _bound(extents: Records, gap: Record, row: int) -> int:
     """Returns the label of what is seen on another row over most of a gap, within a wall's thickness of its edges; 0 for nothing."""
     low, high = extents[gap.left].x2, extents[gap.right].x1

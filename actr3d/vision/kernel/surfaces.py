@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Records
-from actr3d.jit import compiled
+from actr3d.jit import inner_compiled
 
 SURFACE = np.dtype(
     [
@@ -25,7 +25,7 @@ SURFACE = np.dtype(
 """The visible part of an object."""
 
 
-@compiled
+@inner_compiled
 def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Records) -> int:
     """Writes the visible part of each object at the index of its label; a distance is infinite outside the bearing.
 
@@ -68,7 +68,7 @@ def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Reco
     return most
 
 
-@compiled
+@inner_compiled
 def _nearest(one: Array, other: Array, bearing: float) -> tuple[float, float]:
     """Returns the point of a line on the ground that is nearest to the eye, within a bearing; infinity where none is."""
     x, y = other[0] - one[0], other[1] - one[1]

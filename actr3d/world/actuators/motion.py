@@ -13,11 +13,11 @@ from collections.abc import Mapping
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import Steering
 from actr3d.world.body import MAX_CONTROL, Body, actuator
-from actr3d.world.command_registry import checked_angle, checked_name, number
+from actr3d.world.command_registry import checked_angle, checked_name, checked_number
 from actr3d.world.frames import FULL_TURN
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
-from actr3d.world.objects import place
+from actr3d.world.objects import checked_pose
 
 MODERATE = 2.0
 """Default speed of joints [rad/s]. Source: about the 120 degrees/s of the original ACT-R 3D (docs/human-data.md)."""
@@ -45,7 +45,7 @@ def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) ->
         WorldError: If a value is not a number, or greater than the body's greatest speed.
     """
     fastest, spin, _ = body.fastest()
-    speed, turn = number(speed, "walk: speed", -fastest, fastest), number(turn, "walk: turn", -spin, spin)
+    speed, turn = checked_number(speed, "walk: speed", -fastest, fastest), checked_number(turn, "walk: turn", -spin, spin)
     direction = checked_angle(direction, "walk: direction")
     body.motion.cancel_base_movements()
     left = speed * math.sin(direction) if direction else 0.0
@@ -60,7 +60,7 @@ def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
     Raises:
         WorldError: If a value is not a number, the angle is more than a full turn, or the speed is not > 0 or is too fast.
     """
-    angle, speed = checked_angle(angle, "heading: angle"), number(speed, "heading: speed", 1e-6, body.fastest()[1])
+    angle, speed = checked_angle(angle, "heading: angle"), checked_number(speed, "heading: speed", 1e-6, body.fastest()[1])
     body.motion.cancel_base_movements()
     body.motion.targets[HEADING] = (angle, speed)
 
@@ -72,9 +72,9 @@ def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
     Raises:
         WorldError: If a value is not a number, the angle is more than three full turns, or the speed is not > 0 or is too fast.
     """
-    angle, speed = checked_angle(angle, "turn: angle", MOST_TURNS), number(speed, "turn: speed", 1e-6, body.fastest()[1])
+    angle, speed = checked_angle(angle, "turn: angle", MOST_TURNS), checked_number(speed, "turn: speed", 1e-6, body.fastest()[1])
     body.motion.cancel_base_movements()
-    body.motion.targets[TURN] = (body.base.place[2] + angle, speed)
+    body.motion.targets[TURN] = (body.base.pose[2] + angle, speed)
 
 
 @_if_walking
@@ -84,9 +84,9 @@ def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = M
     Raises:
         WorldError: If a value is not a number, or a speed is not > 0 or is too fast.
     """
-    x, y = number(x, "waypoint: x"), number(y, "waypoint: y")
+    x, y = checked_number(x, "waypoint: x"), checked_number(y, "waypoint: y")
     fastest, spin, _ = body.fastest()
-    speed, turn = number(speed, "waypoint: speed", 1e-6, fastest), number(turn, "waypoint: turn", 1e-6, spin)
+    speed, turn = checked_number(speed, "waypoint: speed", 1e-6, fastest), checked_number(turn, "waypoint: turn", 1e-6, spin)
     body.motion.cancel_base_movements()
     body.motion.waypoint = (x, y, speed, turn)
 
@@ -111,7 +111,7 @@ def joint(body: Body, name: str, speed: float) -> None:
     """
     turned, most = _servoed(body, name), body.fastest()[2]
     least, greatest = turned.speeds
-    speed = number(speed, "joint: speed", max(-most, least), min(most, greatest))
+    speed = checked_number(speed, "joint: speed", max(-most, least), min(most, greatest))
     body.motion.targets.pop(name, None)
     body.hold.drive_joint(turned, speed)
     body.physics.changed()
@@ -148,7 +148,7 @@ def steering(body: Body, angle: float) -> None:
         WorldError: If the angle is not a number.
     """
     car = _car(body)
-    angle = number(angle, "steering: angle") / car.ratio
+    angle = checked_number(angle, "steering: angle") / car.ratio
     body.motion.targets["steer"] = (_within(body.joint("steer"), angle), car.rate / car.ratio)
 
 
@@ -159,7 +159,7 @@ def throttle(body: Body, pressed: float) -> None:
     Raises:
         WorldError: If it is not a number in 0 to 1.
     """
-    body.physics.mj_data.ctrl[body.control("throttle")] = number(pressed, "throttle", 0, 1)
+    body.physics.mj_data.ctrl[body.control("throttle")] = checked_number(pressed, "throttle", 0, 1)
     body.physics.changed()
 
 
@@ -170,7 +170,7 @@ def brake(body: Body, pressed: float) -> None:
     Raises:
         WorldError: If it is not a number in 0 to 1.
     """
-    body.motion.brake = number(pressed, "brake", 0, 1)
+    body.motion.brake = checked_number(pressed, "brake", 0, 1)
     body.physics.mj_data.ctrl[body.control("brake")] = 0
     body.physics.changed()
 
@@ -182,10 +182,14 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
     Raises:
         WorldError: If a value is not a number, or out of bounds.
     """
-    body.base.put(*place("teleport", x, y, heading))
+    before = body.base.heading if body.base.planar else 0.0
+    body.base.put(*checked_pose("teleport", x, y, heading))
+    if TURN in body.motion.targets:  # the rest of a turn stays the same
+        target, speed = body.motion.targets[TURN]
+        body.motion.targets[TURN] = (target + body.base.heading - before, speed)
     body.hold.stand()
     body.physics.changed()
-    body.physics.refresh()
+    body.physics.refresh_positions()
     for hand in body.hands.values():
         hand.carry()
     body.physics.changed()
@@ -213,7 +217,7 @@ def grasp(body: Body, object: str, hand: str = "right") -> None:
     """
     holds = body.hands[checked_name(hand, body.hands, body.name, "hand")]
     number = body.physics.loose(object)
-    body.physics.refresh()
+    body.physics.refresh_positions()
     if holds.held is None and holds.reaches(number):
         holds.grasp(number)
         body.physics.changed()
@@ -248,7 +252,7 @@ def control(body: Body, name: str, *values: float) -> None:
         takes = "one number" if count == 1 else f"{count} numbers"
         raise WorldError(f"{body.name}: control '{name}' takes {takes} (got {', '.join(map(repr, values)) or 'none'})")
     what = f"{body.name}: control '{name}'"
-    body.physics.mj_data.ctrl[controls] = [number(value, what, -MAX_CONTROL, MAX_CONTROL) for value in values]
+    body.physics.mj_data.ctrl[controls] = [checked_number(value, what, -MAX_CONTROL, MAX_CONTROL) for value in values]
     body.physics.changed()
 
 
@@ -271,14 +275,19 @@ def _target(body: Body, name: str, angle: float, speed: float, what: str) -> tup
     """
     turned = _servoed(body, name)
     is_limb = turned.turns and max(map(abs, turned.limits)) <= FULL_TURN
-    angle = (checked_angle if is_limb else number)(angle, f"{what}: angle")
+    angle = (checked_angle if is_limb else checked_number)(angle, f"{what}: angle")
     least, greatest = turned.speeds
-    return _within(turned, angle), number(speed, f"{what}: speed", 1e-6, min(body.fastest()[2], -least, greatest))
+    return _within(turned, angle), checked_number(speed, f"{what}: speed", 1e-6, min(body.fastest()[2], -least, greatest))
 
 
 def _within(joint: Joint, angle: float) -> float:
     """Returns an angle [rad], or the place of a slide [m], or the limit of the joint where that is nearer."""
     return max(joint.lower, min(joint.upper, angle))
+
+
+def saccade_time(angle: float) -> float:
+    """Returns the duration of an eye movement over an angle [rad], in seconds."""
+    return SACCADE + SACCADE_PER_RAD * abs(angle)
 
 
 def _look(body: Body, left: float, up: float, speed: float | None = None) -> None:
@@ -287,7 +296,7 @@ def _look(body: Body, left: float, up: float, speed: float | None = None) -> Non
     to_yaw, to_pitch = _within(yaw, left), _within(pitch, -up)
     turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))
     farthest = max(turns)
-    time = SACCADE + SACCADE_PER_RAD * farthest if speed is None else farthest / number(speed, "gaze: speed", 1e-6)
+    time = saccade_time(farthest) if speed is None else farthest / checked_number(speed, "gaze: speed", 1e-6)
     for name, angle, turn in zip(("eye_yaw", "eye_pitch"), (to_yaw, to_pitch), turns, strict=True):
         body.motion.targets[name] = (angle, max(turn / time, 1e-6) if time > 0 else MODERATE)
 

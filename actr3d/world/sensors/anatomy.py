@@ -72,8 +72,7 @@ def anatomy(body: Body) -> BodyPlan:
 
 
 def _plan(model: Any, joint: Joint) -> JointPlan:
-    hinge = int(model.jnt_type[joint.number]) == 3
     along = [abs(float(value)) for value in model.jnt_axis[joint.number]]
-    axis = (HINGE_AXES if hinge else SLIDE_AXES)[along.index(max(along))]
+    axis = (HINGE_AXES if joint.turns else SLIDE_AXES)[along.index(max(along))]
     lower, upper = (None if math.isinf(limit) else limit for limit in joint.limits)
-    return JointPlan(name=joint.name, kind="hinge" if hinge else "slide", axis=axis, lower=lower, upper=upper, driven=joint.driven)
+    return JointPlan(name=joint.name, kind="hinge" if joint.turns else "slide", axis=axis, lower=lower, upper=upper, driven=joint.driven)

@@ -89,7 +89,7 @@ def velocity(body: Body, part: str | None = None, frame: Literal["part", "world"
     """
     if frame not in ("part", "world"):
         raise WorldError(f"velocity: frame must be 'part' or 'world' (got {frame!r})")
-    body.physics.refresh()
+    body.physics.refresh_velocities()
     angular, linear = _velocity(body, body.part_number(part), local=frame == "part")
     return Velocity(linear=linear, angular=angular)
 
@@ -101,7 +101,7 @@ def gyroscope(body: Body, part: str | None = None) -> Vector:
     Raises:
         WorldError: If it has no such part.
     """
-    body.physics.refresh()
+    body.physics.refresh_velocities()
     return _velocity(body, _head(body, part), local=True)[0]
 
 
@@ -148,9 +148,8 @@ def grasp(body: Body) -> dict[str, str | None]:
 
 
 def _velocity(body: Body, number: int, local: bool) -> tuple[Vector, Vector]:
-    """Returns angular and linear velocity of a MuJoCo body; positions must be up to date."""
+    """Returns angular and linear velocity of a MuJoCo body; velocities must be up to date."""
     model, data = body.physics.mj_model, body.physics.mj_data
-    mujoco.mj_comVel(model, data)
     moves: NDArray[np.float64] = np.zeros(6)
     mujoco.mj_objectVelocity(model, data, mjtObj.mjOBJ_XBODY, number, moves, int(local))
     a, b, c, x, y, z = moves.tolist()

@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.errors import WorldError
 from actr3d.values import NOT_TRACED
 from actr3d.world.body import Body, sensor
-from actr3d.world.command_registry import number
+from actr3d.world.command_registry import checked_number
 from actr3d.world.joints import AT_LIMIT, Joint
 
 
@@ -87,7 +87,7 @@ def size_in(body: Body, positions: Mapping[str, float] | None = None) -> SizeInP
     given: Mapping[str, float] = {} if positions is None else positions
     if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
         raise WorldError(f"size_in: positions: must be positions by joint (got {positions!r})")
-    there = {joint: number(at, f"size_in: {joint}", *_within(body.joint(joint))) for joint, at in given.items()}
+    there = {joint: checked_number(at, f"size_in: {joint}", *_within(body.joint(joint))) for joint, at in given.items()}
     box = body.bounding_box("body", there)
     depth, width, height = box.size
     return SizeInPosture(width=width, depth=depth, height=height, middle=box.centre[1])

@@ -12,7 +12,7 @@ from mujoco import mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.world.body import Body, sensor
-from actr3d.world.command_registry import checked_angle, number, whole
+from actr3d.world.command_registry import checked_angle, checked_number, checked_whole
 
 BEYOND = 1e-6
 """Distance behind a hit on the body itself at which a ray continues [m]."""
@@ -45,7 +45,7 @@ def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: f
         WorldError: If a value is not a number, an angle is more than a full turn, the reach is negative, or there is no such frame.
     """
     angle, elevation = checked_angle(angle, "rangefinder: angle"), checked_angle(elevation, "rangefinder: elevation")
-    return _cast(body, at, np.array([angle]), elevation, number(reach, "rangefinder: reach", 0))[0]
+    return _cast(body, at, np.array([angle]), elevation, checked_number(reach, "rangefinder: reach", 0))[0]
 
 
 @sensor
@@ -59,10 +59,10 @@ def laser(
     Raises:
         WorldError: If `rays` is not a whole number in 1 to 100,000, `fov` not in 0 to 2 pi, or as for the rangefinder.
     """
-    count = whole(rays, "laser: rays", 1, 100_000)
-    half = number(fov, "laser: fov", 0, 2 * math.pi) / 2
+    count = checked_whole(rays, "laser: rays", 1, 100_000)
+    half = checked_number(fov, "laser: fov", 0, 2 * math.pi) / 2
     angles = np.linspace(half, -half, count) if count > 1 else np.zeros(1)
-    return _cast(body, at, angles, checked_angle(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
+    return _cast(body, at, angles, checked_angle(elevation, "laser: elevation"), checked_number(reach, "laser: reach", 0))
 
 
 @sensor
@@ -72,8 +72,8 @@ def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
     Raises:
         WorldError: If the reach is not a number from 0 on.
     """
-    reach = number(reach, "proximity: reach", 0)
-    body.physics.refresh()
+    reach = checked_number(reach, "proximity: reach", 0)
+    body.physics.refresh_positions()
     model, data = body.physics.mj_model, body.physics.mj_data
     nearest, found = reach, None
     for bound, mine, other in _candidates(body, reach):
@@ -91,10 +91,8 @@ def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
     """Returns pairs of own and other geoms, the nearest first: (lower bound of their distance, own, other)."""
     model, data = body.physics.mj_model, body.physics.mj_data
     mine = body.touch_geoms
-    solid = (model.geom_contype | model.geom_conaffinity) != 0
     ground = (model.geom_type == int(mjtGeom.mjGEOM_PLANE)) | (model.geom_type == int(mjtGeom.mjGEOM_HFIELD))
-    solid &= ~ground & ~body.contacts.own_geoms()
-    others = np.flatnonzero(solid)
+    others = np.flatnonzero(body.physics.solid & ~ground & ~body.contacts.own_geoms())
     between = np.linalg.norm(data.geom_xpos[mine][:, None] - data.geom_xpos[others][None], axis=2)
     bounds = between - model.geom_rbound[mine][:, None] - model.geom_rbound[others][None]
     near = np.argwhere(bounds < reach)
@@ -103,7 +101,7 @@ def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
 
 def _cast(body: Body, at: str | None, angles: NDArray[np.float64], elevation: float, reach: float) -> tuple[float | None, ...]:
     """Returns the lengths of rays, None beyond reach."""
-    body.physics.refresh()
+    body.physics.refresh_positions()
     name = at if at is not None else body.eye if body.eye is not None else body.anatomy.base
     origin, axes = body.frame(name)
     flat, up = math.cos(elevation), np.full(len(angles), math.sin(elevation))

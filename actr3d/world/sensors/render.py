@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
 from actr3d.world.body import Body, sensor
-from actr3d.world.command_registry import whole
+from actr3d.world.command_registry import checked_whole
 from actr3d.world.physics import Physics
 
 MAX_PIXELS = 4096
@@ -76,7 +76,7 @@ def depth(body: Body, width: int = 320, height: int = 240) -> Picture:
 
 
 def _picture(body: Body, kind: Literal["image", "depth"], width: int, height: int) -> Picture:
-    width, height = (whole(n, f"{kind}: {what}", 1, MAX_PIXELS) for n, what in ((width, "width"), (height, "height")))
+    width, height = (checked_whole(n, f"{kind}: {what}", 1, MAX_PIXELS) for n, what in ((width, "width"), (height, "height")))
     body.physics.refresh()
     pixels = _renderer(body.physics).draw(body.eye, kind, width, height)
     return Picture(kind=kind, width=width, height=height, pixels=pixels.tobytes())

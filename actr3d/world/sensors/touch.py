@@ -29,7 +29,7 @@ def present(body: Body) -> tuple[Touch, ...]:
 
 @contextmanager
 def feel_steps(bodies: Iterable[Body]) -> Generator[Callable[[], None]]:
-    """Gives some bodies the peak force of each of their touches in the steps that the block makes.
+    """Stores for some bodies the peak force of each of their touches in the steps that the block makes.
 
     Args:
         bodies: Those that feel, all of one world.

@@ -288,3 +288,10 @@ class Agent(ACTR):
     CHANGES["parameter"]("speed", 2.0).carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
     agent.run(0.05)
     assert agent.seen == [(1.2, 1.2), (2.0, 2.0)]
+
+
+def test_a_wrong_parameter_of_an_agent_without_a_name_is_called_one_of_top() -> None:
+    agent = Counter()
+    agent.run(0)
+    with pytest.raises(Actr3dError, match="no parameter 'speed': 'top' has no 'speed'"):
+        CHANGES["parameter"].of_arguments(["speed", 3], {}).carry_out(Parts([agent]))

@@ -14,6 +14,7 @@ import pytest
 
 from actr3d.actr import (
     ACTR,
+    BlendingMemory,
     Buffer,
     DMBaseLevel,
     DMNoise,
@@ -28,6 +29,7 @@ from actr3d.actr import (
     Timer,
 )
 from actr3d.errors import ParameterError
+from actr3d.motor import Motor as BodyMotor
 
 made: Any = None
 
@@ -108,3 +110,43 @@ def test_agents_take_functions_and_infinite_thresholds() -> None:
 def test_agents_take_any_attribute() -> None:
     agent: Any = ACTR(anything=3)
     assert agent.anything == 3
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "value", "message"),
+    [
+        (lambda: Memory(Buffer()), "latency", "0.05", r"Memory.latency: must be a number \(got '0.05'\)"),
+        (lambda: BlendingMemory(Buffer()), "latency", None, r"BlendingMemory.latency: must be a number \(got None\)"),
+        (lambda: BlendingMemory(Buffer()), "temperature", 0, r"BlendingMemory.temperature: must be > 0 \(got 0\.0\)"),
+        (lambda: BodyMotor(), "patience", -1, r"Motor.patience: must be > 0 \(got -1"),
+        (lambda: Timer(), "a", 0, r"Timer.a: must be > 0 \(got 0"),
+        (lambda: DMBaseLevel(Memory(Buffer())), "limit", 2.5, r"DMBaseLevel.limit: must be a whole number \(got 2.5\)"),
+        (lambda: Partial(Memory(Buffer())), "strength", "1", r"Partial.strength: must be a number \(got '1'\)"),
+        (lambda: ACTR(), "production_time", -1, r"ACTR.production_time: must be >= 0 \(got -1"),
+        (lambda: type("Agent", (ACTR,), {})(), "production_time", "x", r"Agent.production_time: must be a number \(got 'x'\)"),
+    ],
+)
+def test_a_parameter_can_be_set_to_what_it_can_be_made_with(module: Callable[[], Any], name: str, value: object, message: str) -> None:
+    part = module()
+    before = getattr(part, name, "none")
+    with pytest.raises(ParameterError, match=f"^{message}"):
+        setattr(part, name, value)
+    assert getattr(part, name, "none") == before
+
+
+def test_a_class_of_a_modeller_may_use_the_names_of_parameters_for_something_else() -> None:
+    class Clock(Timer):
+        def __init__(self, a: Any) -> None:
+            super().__init__()
+            self.a = a
+            self.startpulse = "none"
+
+    assert Clock("x").a == "x"
+
+
+def test_a_timer_whose_pulses_get_shorter_and_shorter_lets_time_pass() -> None:
+    agent: Any = ACTR()
+    agent.timer = Timer(startpulse=1e-9, a=1e-9)
+    agent.run(0.01)
+    assert agent.now() == 0.01
+    assert agent.timer.t == 1e-6

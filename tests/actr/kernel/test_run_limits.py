@@ -260,3 +260,13 @@ def test_a_run_that_ends_by_itself_is_the_same_without_a_limit(file: Path, tmp_p
     assert free[0] == limited[0]
     assert free[1] == limited[1]
     assert free[0] or free[1]
+
+
+def test_the_end_may_be_changed_before_the_limits_are_used_again() -> None:
+    limits = RunLimits(until=1)
+    for end in (1, 2):
+        limits.until = end
+        with limits:
+            model: Any = Clock()
+            model.run()
+            assert model.now() == end

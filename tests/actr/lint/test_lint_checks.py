@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.lint.checks import unchecked
 from actr3d.actr.loading import load_text
 from actr3d.errors import ChunkError, ModelWarning, ProductionException
 from tests.helpers.warnings_of_models import HEAD, warned
@@ -120,3 +121,12 @@ def test_an_error_in_a_body_names_file_line_production_and_what_may_be_meant() -
     assert caught.value.__notes__ == ["in production 'p' (loud.py:11) at 0.05 s; did you mean 'set'?"]
     frames = [(f.path if isinstance(f.path, str) else f.path.name, f.lineno + 1) for f in caught.traceback]
     assert ("loud.py", 12) in frames
+
+
+def test_classes_that_ran_unchecked_are_checked_later() -> None:
+    agent: Any = load_text(HEAD + "    def act(self):\n        if self:\n            self.goal.clear", "loud.py").Agent
+    with unchecked(), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        agent().run(0)
+    with pytest.warns(ModelWarning, match="without brackets does nothing"):
+        agent().run(0)

@@ -12,6 +12,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_file
 from actr3d.actr.loading.sweep import label, parameters, run, settings, with_values
 from actr3d.errors import ModelFileError, ParameterError
+from actr3d.trace import Trace
 
 MODEL = '''"""A model."""
 a = 1
@@ -157,3 +158,26 @@ def test_mistakes_are_named(folder: Path) -> None:
         run("bad")
     assert not LOG.locked
     assert LOG.directory is None
+
+
+def test_the_runs_of_a_sweep_are_runs_of_the_program_around_it(folder: Path) -> None:
+    (folder / "clock.py").write_text("length = 0.5\nfrom actr3d.actr import Model\nModel().run(length)\n", encoding="utf-8")
+    (folder / "program.py").write_text("import ccm\nccm.run('clock', length=[0.5, 0.75])\n", encoding="utf-8")
+    passed: list[tuple[int, int]] = []
+    limits = RunLimits(seed=1, passing=lambda sch, end: passed.append((sch.now_us, end)), trace=Trace())
+    run_file(folder / "program.py", limits=limits)
+    assert passed == [(0, 500_000), (0, 750_000)]
+    assert limits.clock() == 750_000
+    assert limits.trace is not None
+    assert [event.run for event in limits.trace if event.kind == "start"] == [1, 2]
+
+
+def test_a_sweep_ends_where_the_program_around_it_ends(folder: Path) -> None:
+    (folder / "clock.py").write_text("length = 1\nfrom actr3d.actr import Model\nModel().run(length)\n", encoding="utf-8")
+    (folder / "program.py").write_text("import ccm\nccm.run('clock', length=[1, 5, 2])\n", encoding="utf-8")
+    limits = RunLimits(until=3, trace=Trace())
+    run_file(folder / "program.py", limits=limits)
+    assert limits.ended
+    assert limits.trace is not None
+    ends = [(event.time, event.data["by"]) for event in limits.trace if event.kind == "stop"]
+    assert ends == [(1, "limit"), (3, "until"), (0, "until")]

@@ -103,7 +103,7 @@ def test_hips_that_turn_leave_the_margin_where_it_is_narrow_and_wide_shoulders_t
 def test_hips_turn_with_the_shoulders_and_the_eye_looks_ahead(model: Any) -> None:
     simulation = built(model, aperture=0.36, group="large", noise=0.0)
     body = simulation.world.bodies["walker"]
-    simulation.run(until=lambda _: body.base.place[0] > 6.9)
+    simulation.run(until=lambda _: body.base.pose[0] > 6.9)
     turned = {joint: round(math.degrees(body.joints[f"{joint}_yaw"].position)) for joint in ("stance", "pelvis", "torso", "head", "eye")}
     side = 1 if turned["stance"] > 0 else -1
     assert turned == {"stance": side * 80, "pelvis": 0, "torso": 0, "head": -side * 60, "eye": -side * 20}
@@ -193,7 +193,7 @@ def test_a_doorway_that_becomes_too_narrow_is_stopped_before(model: Any, variant
 def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> PassageResult:
     """Returns what comes of a doorway that shrinks when the walker has gone so far; the wall stands at 7 m."""
     simulation = built(model, seed, **given)
-    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > at)
+    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.pose[0] > at)
     simulation.command("aperture", to)
     assert simulation.run(120).ended_by == "stop"
     return simulation.result()
@@ -239,7 +239,7 @@ def test_a_walker_that_notices_in_time_turns_where_it_stands_and_goes_on(model: 
 def test_a_walker_that_speeds_up_close_before_it_still_turns_in_time(model: Any, aperture: float, first: float, then: float | None) -> None:
     """The turn that is under way gets faster, too, and it stands still earlier."""
     simulation = built(model, aperture=aperture, speed=first)
-    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 5.3)
+    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.pose[0] > 5.3)
     simulation.command("parameter", "walker.pace.wanted", then)
     simulation.run()
     assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
@@ -249,7 +249,7 @@ def test_a_turn_that_is_under_way_gets_faster_with_the_walk(model: Any) -> None:
     simulation = built(model, aperture=0.4, speed=0.6)
     body = simulation.world.bodies["walker"]
     walker = simulation.agents["walker"]
-    simulation.run(until=lambda _: body.base.place[0] > 4 and abs(walker.motor.stance_yaw_angle) > 5)
+    simulation.run(until=lambda _: body.base.pose[0] > 4 and abs(walker.motor.stance_yaw_angle) > 5)
     rates: list[float] = []
     for _ in range(2):
         before = body.joints["stance_yaw"].position
@@ -264,7 +264,7 @@ def test_a_turn_that_is_under_way_gets_faster_with_the_walk(model: Any) -> None:
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> None:
     simulation = built(model, variant=variant, aperture=0.45)
-    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 8.3)
+    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.pose[0] > 8.3)
     simulation.command("parameter", "walker.pace.wanted", 0.8)
     simulation.run()
     assert simulation.result().outcome == "passed"
@@ -306,7 +306,7 @@ def test_the_replication_turns_in_pieces(model: Any) -> None:
     simulation.run(WALKING)
     turning: list[bool] = []
     simulation.observe(lambda seen: turning.append(abs(simulation.world.bodies["walker"].joints["torso_yaw"].velocity) > 1))
-    while simulation.world.bodies["walker"].base.place[0] < 6.9:
+    while simulation.world.bodies["walker"].base.pose[0] < 6.9:
         simulation.step()
     assert sum(b and not a for a, b in pairwise(turning)) >= 2
 
@@ -451,13 +451,13 @@ def test_a_walker_changes_its_speed_on_the_way(model: Any, variant: str, first: 
     simulation = built(model, variant=variant, aperture=0.45, speed=first)
     simulation.run(7)
     base = simulation.world.bodies["walker"].base
-    at = base.place[0]
+    at = base.pose[0]
     assert 0.5 < at < 4
     simulation.command("parameter", "walker.pace.wanted", then)
     simulation.run(0.6)
-    before = base.place[0]
+    before = base.pose[0]
     simulation.run(0.5)
-    assert (base.place[0] - before) / 0.5 == pytest.approx(then or 1.29, abs=0.05)
+    assert (base.pose[0] - before) / 0.5 == pytest.approx(then or 1.29, abs=0.05)
     assert simulation.agents["walker"].speed == (then or 1.29)
     assert simulation.run(20).ended_by == "stop"
     result = simulation.result()

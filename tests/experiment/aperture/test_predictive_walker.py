@@ -91,13 +91,13 @@ def test_its_speed_may_change_on_the_way(at: float, then: float) -> None:
         simulation.command("parameter", "walker.pace.wanted", then)
         simulation.run(0.6)
         base = simulation.world.bodies["walker"].base
-        before = base.place[0]
+        before = base.pose[0]
         simulation.run(0.5)
-        assert (base.place[0] - before) / 0.5 == pytest.approx(then, abs=0.1)
+        assert (base.pose[0] - before) / 0.5 == pytest.approx(then, abs=0.1)
         simulation.run()
     result = simulation.result()
     assert (result.outcome, result.contacts) == ("passed", 0)
-    assert 0.5 < base.place[0] - 7 < 1.5, "it stands behind the doorway"
+    assert 0.5 < base.pose[0] - 7 < 1.5, "it stands behind the doorway"
 
 
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
@@ -112,7 +112,7 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
     with RunLimits(seed=seed):
         simulation = model.build(model.Parameters(aperture=0.9, scene="two doorways"))
         simulation.run()
-    x, y, _ = simulation.world.bodies["walker"].base.place
+    x, y, _ = simulation.world.bodies["walker"].base.pose
     assert x > 7.3
     assert abs(abs(y) - 1.6) < 0.45, "behind one of them"
     assert not simulation.world.bodies["walker"].get("contacts")
@@ -134,7 +134,7 @@ def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, 
     first = told[-1].split()[2]
     other = {"walker": "other", "other": "walker"}[first]
     assert any(f"{other} waits" in line for line in told)
-    place = {name: body.base.place[0] - 7 for name, body in simulation.world.bodies.items()}
+    place = {name: body.base.pose[0] - 7 for name, body in simulation.world.bodies.items()}
     assert place["walker"] * place["other"] > 0, f"the one that waited has not passed: {place}"
     assert simulation.result().contacts == 0
 
@@ -341,8 +341,8 @@ def test_without_memories_it_does_not_turn_and_decides_before_the_doorway(model:
     with RunLimits(seed=0, until=60):
         simulation: Simulation = model.build(model.Parameters(aperture=0.45, memories=0))
         walker, base = simulation.agents["walker"], simulation.world.bodies["walker"].base
-        simulation.run(until=lambda _: walker.chosen is not None or base.place[0] > 7)
-    assert base.place[0] < 6.5
+        simulation.run(until=lambda _: walker.chosen is not None or base.pose[0] > 7)
+    assert base.pose[0] < 6.5
     assert walker.chosen == 0
 
 
@@ -379,7 +379,7 @@ def test_walks_reach_the_doorway_in_all_phases_of_the_stride(model: Any) -> None
             simulation: Simulation = model.build(model.Parameters(aperture=0.9, turn=0.0))
             data, body = simulation.world.mj_data, simulation.world.bodies["walker"]
             sway = simulation.world.mj_model.joint("walker_stance_sway").qposadr[0]
-            simulation.run(until=lambda _, body=body: body.base.place[0] >= 7)
+            simulation.run(until=lambda _, body=body: body.base.pose[0] >= 7)
         places.append(float(data.qpos[sway]))
     assert min(places) < -0.015
     assert max(places) > 0.015

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 from mujoco import MjSpec
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, WorldError
 from actr3d.world import Body, Floor, Imported, Mannequin, Scene, SimpleObject, Wall, World
 from actr3d.world.anatomy import Anatomy
+from actr3d.world.bodies.planar_base import add_planar_base
 from actr3d.world.sensors.touch import present
+from actr3d.world.velocity_servo import add_servo
 from tests.helpers.small_agents import near
 
 
@@ -80,13 +82,13 @@ def test_a_turn_while_walking_has_the_commanded_angle(by: float, speed: float) -
     ticks(world, math.ceil(abs(by) / speed * 100) - 1)
     assert body.motion
     ticks(world, 1)
-    assert body.base.place[2] == near(by, abs=1e-9)
+    assert body.base.pose[2] == near(by, abs=1e-9)
     assert not body.motion
     assert body.base.speed == near((0.5, 0, 0), abs=1e-3)
     body.set("turn", 3.0, 1.0)
     body.set("heading", 0.0)
     ticks(world, 300)
-    assert math.remainder(body.base.place[2], 2 * math.pi) == near(0, abs=1e-6)
+    assert math.remainder(body.base.pose[2], 2 * math.pi) == near(0, abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -136,7 +138,7 @@ def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
     world, body = world_with_walker(heading=3.0)
     body.set("heading", -3.0, 1.0)
     ticks(world, 10)
-    assert body.base.place[2] == near(3.1, abs=1e-3)
+    assert body.base.pose[2] == near(3.1, abs=1e-3)
     ticks(world, 30)
     assert body.get("pose").heading == near(-3.0, abs=1e-9)
     assert not body.motion
@@ -154,6 +156,40 @@ def test_teleport_keeps_the_posture_and_the_walk_continues_in_the_new_direction(
     ticks(world, 10)
     pose = body.get("pose")
     assert (pose.x, pose.y) == near((5.0, -1.9), abs=1e-6)
+
+
+@dataclass(frozen=True)
+class Cart:
+    """A body that walks, with a hinge that no servo moves."""
+
+    name: str = "cart"
+
+    def add_to(self, mj_spec: MjSpec) -> None:
+        root = add_planar_base(mj_spec, "cart", (0, 0), 0)
+        root.add_site(name="cart_base")
+        root.add_geom(size=[0.1, 0, 0], mass=10)
+        flag = root.add_body(name="cart_flag", pos=[0, 0, 1])
+        flag.add_joint(name="cart_hinge", axis=[0, 1, 0])
+        flag.add_geom(size=[0.05, 0, 0], pos=[0.1, 0, 0], mass=0.1, contype=0, conaffinity=0)
+        for number, name in ((0, "forward"), (1, "sideways"), (5, "turn")):
+            add_servo(mj_spec, f"cart_{name}", "cart_base", 500.0, tuple(float(n == number) for n in range(6)))
+
+    def anatomy(self) -> Anatomy:
+        walking = ("cart_forward", "cart_sideways", "cart_turn")
+        return Anatomy(root="cart", prefix="cart_", servos=walking, walking_servos=walking)
+
+
+def test_a_body_with_a_joint_without_a_servo_stops() -> None:
+    world = World(Scene(parts=(Cart(),)))
+    body = world.bodies["cart"]
+    body.set("walk", 1.0)
+    ticks(world, 10)
+    swings = body.joints["hinge"].velocity
+    body.set("stop")
+    assert body.base.speed == near((0, 0, 0), abs=1e-9)
+    assert body.joints["hinge"].velocity == near(swings) != 0
+    with pytest.raises(WorldError, match="joint 'hinge' has no servo that could move it"):
+        body.joints["hinge"].control = 1.0
 
 
 CUP = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.5)

@@ -35,7 +35,7 @@ def test_it_drives_the_circle_of_a_bicycle(wheel: float, speed: float) -> None:
     path: list[tuple[float, float]] = []
     for _ in range(600):
         world.step(5)
-        path.append(car.base.place[:2])
+        path.append(car.base.pose[:2])
     points = np.array(path)
     # A circle's points: x^2 + y^2 = 2 a x + 2 b y + c, with the middle (a, b) and c = r^2 - a^2 - b^2.
     least_squares: Any = np.linalg.lstsq

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -197,3 +198,11 @@ def test_a_movement_of_joints_that_do_not_exist_is_refused() -> None:
     movement = NamedMovement(name="wave", joints=(("elbow", 1), ("elbw", -1)))
     with pytest.raises(WorldError, match=r"arm: movement 'wave' has no joint 'elbw'; did you mean 'elbow'\? It has elbow"):
         World(Scene(parts=(Floor(), ImportedBody(name="arm", text=ARM, movements=(movement,)))))
+
+
+def test_a_changed_file_has_its_new_root(tmp_path: Path) -> None:
+    file = tmp_path / "robot.xml"
+    for root in ("chassis", "trunk"):
+        body = f'<body name="{root}"><geom size="0.1"/></body>'
+        file.write_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>", encoding="utf-8")
+        assert ImportedBody(name="robot", path=file).anatomy().root == f"robot_{root}"

@@ -164,7 +164,7 @@ def test_walking_and_turning_is_a_circle() -> None:
     path: list[tuple[float, float]] = []
     for _ in range(round(2 * math.pi / 0.8 / 0.01)):
         world.step(5)
-        path.append(body.base.place[:2])
+        path.append(body.base.pose[:2])
     middle = np.mean(path, axis=0)
     assert np.linalg.norm(np.array(path) - middle, axis=1) == near(np.full(len(path), 1.5), rel=0.01)
     assert path[-1] == near((0, 0), abs=0.02)
