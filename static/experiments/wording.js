@@ -46,7 +46,7 @@ export const failuresText = (failures) => `${counted(failures, "trial")} failed`
 
 /** Returns the values that replace those of the design, in one line. */
 export function changedText(changed) {
-  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${levelsText([value].flat())}`).join(" · ");
+  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${name === "seed" ? value : levelsText([value].flat())}`).join(" · ");
 }
 
 /** Returns a level as text that `readLevels` and the command read as the same value: a text that is no plain word in quotation marks. */

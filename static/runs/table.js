@@ -6,14 +6,15 @@ import { remembered } from "../local_storage.js";
 import { alive, session, shownRecording, state } from "../store.js";
 import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, originText, outcomeText, ownName, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
-const ROW = 44; // [px]; style.css has the same
+const ROW = 44; // [px]; panels/runs.css has the same
+const MAX_DIGITS = 19; // of a seed: aligned to the right, texts of numbers are in the order of the numbers
 const AROUND = 6; // the number of rows drawn beyond the visible ones
 
 /** The sort keys: their column headings, and the values to compare. */
 const KEYS = {
   made: { column: "when", text: "Began", of: (run) => run.made },
   model: { column: "model", text: "Model", of: (run) => run.model },
-  seed: { column: "model", text: "Seed", of: (run) => run.seed ?? -1 },
+  seed: { column: "model", text: "Seed", of: (run) => String(run.seed ?? "").padStart(MAX_DIGITS) },
   outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(firstMeasure(run)?.[1] ?? 0).toFixed(2).padStart(9, "0")}` },
   ended: { column: "outcome", text: "End", of: endedText },
   time: { column: "time", text: "Time", of: (run) => run.time },

@@ -68,6 +68,14 @@ def test_a_list_shows_the_last_values_that_a_user_gave_by_hand(desk: Desk, tmp_p
     assert (summary.parameters["aperture"], summary.changed) == (0.25, {"aperture": 0.27})
 
 
+def test_a_seed_that_a_browser_would_round_is_sent_as_text(desk: Desk, tmp_path: Path) -> None:
+    seeds = {"one": 2**53 + 1, "other": 2**53, "small": 7, "text": "a 1"}
+    paths = {name: written(tmp_path, name, firing(1), seed=seed) for name, seed in seeds.items()}
+    _, summaries = desk.listed(tmp_path)
+    assert {one.id: one.seed for one in summaries} == {"one": str(2**53 + 1), "other": str(2**53), "small": 7, "text": "a 1"}
+    assert compare(paths["one"], paths["other"])["parameters"] == {"seed": [str(2**53 + 1), str(2**53)]}
+
+
 FAILING = """from actr3d.actr import *
 from actr3d.simulation import Simulation
 from actr3d.world import Floor, Mannequin, Scene

@@ -26,6 +26,7 @@ from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.loader import listing_of
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
+from workbench.run_facts import seed_of, source_of
 from workbench.scene_colours import palette
 from workbench.scene_framing import SceneFraming
 from workbench.shipped import static
@@ -87,7 +88,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     facts = recorded.facts
     file = facts.get("file", "")
     model = Path(file).name if models is None else ModelFolder(Path(models)).shown(file)
-    seed = facts.get("program_seed", facts.get("seed"))
+    seed = seed_of(facts)
     ended, branched = facts.get("ended"), facts.get("branched")
     branch = "" if branched is None else f" · branch at {time_text(branched, 2)}"
     return {
@@ -103,7 +104,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
 
 def _changes(recorded: Recorded, simulations: Iterable[RecordedSimulation]) -> ChangeTexts:
     facts = recorded.facts
-    listing = listing_of(facts.get("sources", {}).get(facts.get("file", ""), ""))
+    listing = listing_of(source_of(facts))
     walls = [(one.number, one.mj_model, one.facts["world"].get("walls", {})) for one in simulations]
     widths = {(number, name): width for number, model, gaps in walls for name, width in widths_in(model, gaps)}
     return ChangeTexts(listing, facts.get("parameters", {}), widths, value_text=_value, chunk_text=_chunk)
