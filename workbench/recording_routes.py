@@ -235,8 +235,10 @@ async def recorded_code(request: Request, recording: Id) -> dict[str, Any]:
 
 @router.post("/recordings/{recording}/replay")
 async def replay(request: Request, recording: Id, body: Trusting | None = None) -> dict[str, Any]:
-    """Runs a recording again in a process of its own and reports whether all bytes agree; it is cancelled when the clients disconnect.
+    """Runs a recording again in a process of its own and compares all bytes; it is cancelled when the clients disconnect.
 
+    `verdict` is "agrees", "agrees up to its end" (that of a recording which does not go to the end of its run), "differs", or null if it is
+    unknown; `text` says what was compared, where it differs, or why the verdict is unknown.
     403 if this installation did not make the recording, unless `trust` is true.
     """
     sessions = sessions_of(request)

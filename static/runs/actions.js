@@ -12,7 +12,7 @@ import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
 import { nameOf, sizeText, whenText } from "./wording.js";
 
-/** The results of replays by id: {since, share} while one is running, then {agrees, text}. */
+/** The results of replays by id: {since, share} while one is running, then {verdict, text}. */
 export const replays = signal({});
 /** The current slow action; null for none: {text, done?, of?}. */
 export const busy = signal(null);
@@ -77,8 +77,9 @@ function note(id, replay) {
   replays.value = { ...replays.value, [id]: replay };
 }
 
-/** Runs a recording again in a separate process; the result is stored in `replays`. */
+/** Runs a recording again in a separate process, unless it is running; the result is stored in `replays`. */
 export async function replayRun(run) {
+  if (cancels.has(run.id)) return;
   const cancel = new AbortController();
   cancels.set(run.id, cancel);
   const path = `/api/recordings/${run.id}/replay`;
@@ -90,9 +91,9 @@ export async function replayRun(run) {
   }, LOOK);
   try {
     const verdict = await withTrust(run.id, "Replaying it", (trust) => call("POST", path, { trust }, cancel.signal));
-    note(run.id, verdict ?? { agrees: null, text: "cancelled" });
+    note(run.id, verdict ?? { verdict: null, text: "cancelled" });
   } catch (error) {
-    note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
+    note(run.id, { verdict: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }
   clearInterval(look);
   cancels.delete(run.id);

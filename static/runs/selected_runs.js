@@ -3,6 +3,7 @@
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
+import { buttonTitle } from "../keys.js";
 import { remembered } from "../local_storage.js";
 import { shownRecording } from "../store.js";
 import { compareRuns } from "../compare/compare.js";
@@ -19,6 +20,12 @@ function DownloadLinks({ run }) {
     ${formatsOf(run).map(([format, text, title]) => html`<a key=${format} href=${`/api/recordings/${run.id}/file?form=${format}`} download title=${title} onClick=${(event) => get(event, format, text)}>${text}</a>`)}
   </span>`;
 }
+
+const VERDICTS = {
+  agrees: ["Every byte agrees.", "good"],
+  "agrees up to its end": ["It agrees up to the end of the recording.", "good"],
+  differs: ["It differs.", "bad"],
+};
 
 function Replayed({ run }) {
   const result = replays.value[run.id];
@@ -37,9 +44,8 @@ function Replayed({ run }) {
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = result.agrees === true ? (result.text.startsWith("agrees up to") ? "It agrees up to the end of the recording." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
-  const text = result.text.replace(/^(every byte agrees|agrees up to the end of the recording|differs): /, "");
-  return html`<div class="replayed" role="status"><b class=${result.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
+  const [head, kind] = VERDICTS[result.verdict] ?? ["Not known.", "bad"];
+  return html`<div class="replayed" role="status"><b class=${kind}>${head}</b> <span>${result.text}</span></div>`;
 }
 
 /** Whether the facts about the chosen run are shown; where there is little room, the list has it at first. */
@@ -82,7 +88,7 @@ function One({ run }) {
       <${Button} disabled=${idle || own || !shownRecording.value} title=${noCompare} onClick=${() => compareRuns(run.id, shownRecording.value)}>Compare with the present run<//>
       <${Button} disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …<//>
       <span class="stretch"></span>
-      <${Button} class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /><//>
+      <${Button} class="danger bare" aria-label="Delete" title=${buttonTitle({ key: "Delete" }, "Delete")} disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /><//>
     </div>
     <div class="files">
       <${DownloadLinks} run=${run} />
