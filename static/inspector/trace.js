@@ -12,6 +12,7 @@ import { timeUnit } from "../parts/units.js";
 import { furthest, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
+import { buttonTitle } from "../keys.js";
 import { events, session, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
@@ -80,7 +81,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
       ${!isTouch && (kind === "fire" || chosen)
-        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${eventMomentText(time)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
+        ? html`<button class="bare" tabindex="-1" title=${buttonTitle({ key: "w" }, "Why? Explains this moment, and leaves the run where it is")} aria-label="Why at ${eventMomentText(time)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
   </tr>`;

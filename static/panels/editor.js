@@ -14,7 +14,7 @@ import { Unchanged } from "../editor/unchanged.js";
 import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
 import { command, commandsOf } from "../commands.js";
-import { noteKey } from "../keys.js";
+import { buttonTitle, noteKey } from "../keys.js";
 import { goToTab } from "../open_tab.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
@@ -43,8 +43,8 @@ async function runShown() {
 Object.assign(keys, { run: runShown, save: saveShown });
 const hasText = () => Boolean(shownDocument());
 const noText = () => "No file is open in the editor.";
-command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText, needs });
-command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText, needs });
+const saving = command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText, needs });
+const runningText = command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText, needs });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor", needs);
 
 const onShown = (work) => () => shownDocument() && work(shownDocument());
@@ -128,8 +128,8 @@ function Standing({ document }) {
       ${document.saving.value ? html`<span class="quiet">saving …</span>` : dirty ? html`<span class="unsaved">● unsaved</span>` : null}
       ${note && !document.saving.value ? html`<span class="quiet" title=${note}>${note}</span>` : null}
     </span>
-    <${Button} disabled=${!dirty} title="Save (Ctrl S)" onClick=${saveShown}>Save<//>
-    <button class="primary" title="Save, and run from the start (Ctrl Enter)" onClick=${runShown}>Save and run</button>
+    <${Button} disabled=${!dirty} title=${buttonTitle(saving, "Save")} onClick=${saveShown}>Save<//>
+    <button class="primary" title=${buttonTitle(runningText, "Save, and run from the start")} onClick=${runShown}>Save and run</button>
   </div>`;
 }
 
