@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -14,7 +13,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from actr3d.values import escape_surrogates, to_json
 from workbench.design_files import MOST, CheckRequest, Level, StartRequest, Workers, designs_of
 from workbench.disconnects import while_connected
-from workbench.experiment_command import ExperimentFacts, ExperimentRunError
+from workbench.experiment_command import ExperimentFacts, ExperimentRunError, processors
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile
@@ -62,10 +61,10 @@ def experiments_of(request: Request) -> Experiments:
 def designs(request: Request) -> dict[str, Any]:
     """Lists the designs of the library and of the model files, without executing them.
 
-    `processors` is how many this computer has, `most` the greatest numbers with which an experiment can be started.
+    `processors` is how many experiments can use, `most` the greatest numbers with which an experiment can be started.
     """
     outlines = [asdict(outline) for outline in designs_of(sessions_of(request).folder)]
-    return {"designs": outlines, "processors": os.cpu_count() or 1, "most": MOST}
+    return {"designs": outlines, "processors": processors(), "most": MOST}
 
 
 @router.post("/designs/check")

@@ -24,9 +24,11 @@ from workbench.experiment_command import (
     ExperimentProgress,
     ExperimentRunError,
     TriedFacts,
+    processors,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
 from workbench.retention import unique_suffix
+from workbench.run_facts import exact_seed
 from workbench.sessions import PermissionNeededError, Sessions
 from workbench.trash import OWN, move_to_trash
 
@@ -246,8 +248,11 @@ class Experiments:
         return self._shown(folder.facts if run is None or run.facts is None else run.facts)
 
     def _shown(self, facts: ExperimentFacts | None) -> ExperimentFacts | None:
-        """Returns facts with the model file as pages show it."""
-        return None if facts is None else msgspec.structs.replace(facts, model=self._models.shown(facts.model))
+        """Returns facts with the model file and the seed as pages show them."""
+        if facts is None:
+            return None
+        changed = facts.changed | ({"seed": exact_seed(facts.changed["seed"])} if "seed" in facts.changed else {})
+        return msgspec.structs.replace(facts, model=self._models.shown(facts.model), seed=exact_seed(facts.seed), changed=changed)
 
     # -- checking
 
@@ -350,8 +355,7 @@ class Experiments:
         facts = None if new else folder.facts
         self._starting.add(name)
         try:
-            number = [] if workers is None else [f"--workers={workers}"]
-            command = await ExperimentCommand.start([*arguments, *number], self._made_root())
+            command = await ExperimentCommand.start([*arguments, f"--workers={workers or processors()}"], self._made_root())
         finally:
             self._starting.discard(name)
         if self._closed:

@@ -19,6 +19,7 @@ from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.recordings import Recordings
+from workbench.run_facts import exact_seed
 from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, is_there, start_of
 from workbench.worker.messages import (
     ENDED,
@@ -314,7 +315,8 @@ class Session(Broadcast, Receiver):
             if self.state is not None and self.state.status not in ENDED:
                 status_now = "failed" if self._ending != "stopped" else "ended"
                 reason = self._ending or self._after_end
-                self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None, target=None)
+                ended = {"status": status_now, "reason": reason, "breakpoint": None, "measured": None, "target": None}
+                self.state = msgspec.structs.replace(self.state, **ended)
                 self.state_version += 1
         self.changed(facts=True)
 
@@ -563,7 +565,7 @@ class Session(Broadcast, Receiver):
             "speed": self.speed,
             "real_time": self.real_time,
             "settings": start.settings if start is not None else {},
-            "seed": None if facts is None else _exactly(facts.seed),
+            "seed": None if facts is None else exact_seed(facts.seed),
             "stale": self._shown is not None and self._shown.is_stale(digest),
             "gone": not is_there(self.path),
             "digest": digest,
@@ -625,7 +627,7 @@ class Session(Broadcast, Receiver):
             return b"null"
         values = {
             name: getattr(state, name)
-            for name in ("status", "reason", "tick", "time", "furthest", "target", "wanted", "measured", "events")
+            for name in ("status", "reason", "breakpoint", "tick", "time", "furthest", "target", "wanted", "measured", "events")
         }
         return msgspec.json.encode(
             {
@@ -686,11 +688,6 @@ class Session(Broadcast, Receiver):
     def _notify_watchers(self, what: Facts | State | ViewSettings | None) -> None:
         for watcher in self.watchers:
             watcher(what)
-
-
-def _exactly(seed: int | str) -> int | str:
-    """Returns a seed in a form that a page can read without loss: as text if it exceeds JavaScript's exact integers."""
-    return seed if isinstance(seed, int) and abs(seed) < 2**53 else str(seed)
 
 
 def never_begun(state: State | None, log: EventLog) -> bool:

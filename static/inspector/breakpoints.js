@@ -13,10 +13,7 @@ const list = optimistic(
 export const breakpoints = list.value;
 
 /** The production at whose breakpoint the run is paused; null if there is none. */
-export const held = computed(() => {
-  const { status, reason } = state.value ?? {};
-  return status === "paused" ? /^breakpoint: (.*) fired$/s.exec(reason)?.[1] ?? null : null;
-});
+export const held = computed(() => state.value?.breakpoint ?? null);
 
 /** Sets a breakpoint on a production, or removes it. */
 export function toggleBreakpoint(name) {

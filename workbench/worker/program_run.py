@@ -608,8 +608,6 @@ class ProgramRun(ControlledRun):
         raise SimulationError(f"'{name}': the parameters of a program cannot change while it runs; restart it with the new value")
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        if self._controller.status in ENDED:
-            raise SimulationError("the run is over: go back to an earlier time, or restart it")
         make = self._change_now(word, values, named, body)
         before = len(self.trace)
         self.flush()

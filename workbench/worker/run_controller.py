@@ -65,6 +65,8 @@ class RunController:
         self.status: Status = "running" if start.run else "paused"
         self.reason = "" if start.run else "at its start"
         self.watch = Watch(breakpoints=frozenset(start.breakpoints))
+        self._breakpoint: str | None = None
+        """The production at whose breakpoint the run was paused; None for another reason."""
         self.pacer = Pacer(start.factor)
         self.leaving = False
         """Whether the worker must end."""
@@ -210,7 +212,7 @@ class RunController:
 
     def pause(self, reason: str) -> None:
         """Pauses the run."""
-        self.status, self.reason = "paused", shortened(reason)
+        self.status, self.reason, self._breakpoint = "paused", shortened(reason), self.watch.met
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
@@ -231,7 +233,7 @@ class RunController:
     def went_back(self, reason: str = "went to this time") -> None:
         """Records that the run is now at another time, whose events were all known, and why."""
         self._seen = len(self.run.trace)
-        self.status, self.reason = "paused", reason
+        self.status, self.reason, self._breakpoint = "paused", reason, None
         self._halt()
 
     def goes_another_way(self, events: int, changed: str, *, ahead: bool) -> None:
@@ -244,7 +246,7 @@ class RunController:
         """
         with self._sending:
             if self.status == "paused":
-                self.reason = changed
+                self.reason, self._breakpoint = changed, None
             if ahead:
                 self._reached = 0
             if ahead or events < self._sent:
@@ -309,8 +311,7 @@ class RunController:
         Raises:
             Actr3dError: If the run is over.
         """
-        if self.status in ENDED:
-            raise Actr3dError("the run is over: go back to an earlier time, or restart it")
+        self._check_goes_on()
         self.watch = self.watch.renewed(**wanted)
         self._seen = len(self.run.trace)
         self.status, self.reason = "running", ""
@@ -335,11 +336,18 @@ class RunController:
         """Sends the running simulation a command; see `ControlledRun.change`.
 
         Raises:
+            Actr3dError: If the run is over.
             Exception: If it cannot be carried out.
         """
+        self._check_goes_on()
         self._reached = max(self._reached, self.run.clock)
         self.run.change(word, values, named or {}, body, drop=drop)
         self.show()
+
+    def _check_goes_on(self) -> None:
+        """Raises an error if the run is over at the present moment."""
+        if self.status in ENDED:
+            raise Actr3dError("the run is over: go back to an earlier time, or restart it")
 
     def undo(self, *, drop: bool) -> None:
         """Undoes the last change by hand up to now; see `ControlledRun.undo`.
@@ -383,6 +391,7 @@ class RunController:
         state = State(
             status=self.status,
             reason=self.reason,
+            breakpoint=self._breakpoint if self.status == "paused" else None,
             tick=run.clock // run.period,
             time=seconds(run.clock),
             furthest=seconds(max(run.clock, run.furthest)),

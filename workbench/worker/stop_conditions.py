@@ -37,6 +37,8 @@ class Watch:
     contact: str | None = None
     """Stops when this body touches something; an empty text means any body."""
     breakpoints: frozenset[str] = frozenset()
+    met: str | None = None
+    """The production of `breakpoints` because of which the run stops."""
     touching: Touches = field(default_factory=Touches)
     """The contacts that existed at the last check, which do not count as new."""
 
@@ -83,6 +85,7 @@ class Watch:
             if event.kind == "fire":
                 name = event.data["production"]
                 if name in self.breakpoints:
+                    self.met = name
                     return f"breakpoint: {name} fired"
                 cycle = self.cycles > 0 and self.system in (None, event.source)
                 self.cycles -= cycle
