@@ -19,7 +19,7 @@ MAX_RECORDINGS = 500
 MAX_MEGABYTES = 4_000
 """Default maximum size of all recordings [MB]."""
 MAX_BRANCHES = 20
-"""How many of the newest branches of one run are kept; a branch that a user has renamed does not count."""
+"""How many of the newest branches of one run are kept; branches with a label do not count."""
 _BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
 """The form of the name that a run gives its recording; any other name was given by a user."""

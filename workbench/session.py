@@ -440,7 +440,7 @@ class Session(Broadcast, Receiver):
         self.changed(facts=True)
 
     def take_choices(self, other: Session) -> None:
-        """Takes over what users have chosen in another session: overlays and speed, and the breakpoints if it has the same model file."""
+        """Applies what users have chosen in another session: overlays and speed, and the breakpoints if it has the same model file."""
         self.look = other.look
         self._notify_watchers(self.look)
         if other.speed_chosen:

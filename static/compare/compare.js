@@ -71,7 +71,7 @@ function Dialog() {
     <div class="compare-head">
       <h2 id="compare-title">Two runs</h2>
       ${found.answer ? html`<${Head} runs=${found.answer.runs} />` : html`<span class="stretch"></span>`}
-      <button class="bare" title="Change sides" onClick=${() => (pair.value = pair.value.toReversed())}>Change sides</button>
+      <button class="bare" title="Swap sides" onClick=${() => (pair.value = pair.value.toReversed())}>Swap sides</button>
       <button class="bare" aria-label="Close" title=${buttonTitle({ key: "Escape" }, "Close")} onClick=${() => box.current.close()}><${Icon} name="close" /></button>
     </div>
     <${Contents} ...${found} kinds=${kinds} />

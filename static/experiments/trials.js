@@ -72,8 +72,8 @@ export function Trials({ experiment, facts }) {
         ${answer ? html`<span class="number quiet" role="status">${answer.total === 0 ? "no trials" : `${(answer.first + 1).toLocaleString("en")}–${last.toLocaleString("en")} of ${counted(answer.total, "trial")}`}</span>` : null}
         ${answer && answer.total > PAGE
           ? html`<span class="choices">
-              <${Button} aria-label="Trials before" title="Before" disabled=${answer.first === 0} onClick=${() => (first.value = Math.max(0, answer.first - PAGE))}><span class="back"><${Icon} name="right" /></span><//>
-              <${Button} aria-label="Trials after" title="After" disabled=${last >= answer.total} onClick=${() => (first.value = answer.first + PAGE)}><${Icon} name="right" /><//>
+              <${Button} aria-label="Previous page" title="Previous page" disabled=${answer.first === 0} onClick=${() => (first.value = Math.max(0, answer.first - PAGE))}><span class="back"><${Icon} name="right" /></span><//>
+              <${Button} aria-label="Next page" title="Next page" disabled=${last >= answer.total} onClick=${() => (first.value = answer.first + PAGE)}><${Icon} name="right" /><//>
             </span>`
           : null}
       </span>

@@ -2,7 +2,7 @@
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 
-const ROW = 23; // the height of a row, as panels/productions.css has it [px]
+const ROW = 23; // the height of a row, as inspector/rows.css has it [px]
 const HEAD = 26; // the height of the head [px]
 const SPARE = 12; // the number of rows drawn beyond the visible ones
 

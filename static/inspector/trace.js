@@ -51,7 +51,7 @@ function Groups() {
       )}
       <div class="menu-end">
         <button onClick=${() => (groups.value = all)}>All</button>
-        <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>As at first</button>
+        <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>Defaults</button>
       </div>
     </div>
   </details>`;

@@ -16,7 +16,7 @@ export function AreaMenu({ area, opening }) {
   const menu = useRef(null);
   if (alone !== null) return null;
   const { maximise, collapse } = layoutCommands[area];
-  const entries = [[maximise, maximised.value === area ? "All parts of the page again" : "Maximise"], [collapse, "Collapse"], [opening, "Open in a window"], [swap, "Swap the sides"]];
+  const entries = [[maximise, maximised.value === area ? "Restore the layout" : "Maximise"], [collapse, "Collapse"], [opening, "Open in a window"], [swap, "Swap the sides"]];
 
   function place(event) {
     if (event.newState !== "open") return;

@@ -252,7 +252,7 @@ class ProgramRun(ControlledRun):
             self._controller.repeat_recorded(known_run)
 
     def _take_ahead(self, shown: SimulationDisplay) -> None:
-        """Gives a simulation what is recorded of its past and future."""
+        """Passes to a simulation what is recorded of its past and future."""
         number = shown.simulation.event_log.number
         if number is not None:
             shown.kept.states = self._ahead.pop(number, shown.kept.states)
