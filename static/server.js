@@ -24,6 +24,9 @@ export async function call(method, path, body, signal) {
   return answered(await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal }));
 }
 
+/** Returns the address of a recording. */
+export const recordingPath = (id) => `/api/recordings/${encodeURIComponent(id)}`;
+
 /** Sends a recording file; returns the response, or throws an Error with the reason. */
 export async function sendFile(path, file) {
   return answered(await answerOf(path, { method: "POST", headers: { "content-type": "application/vnd.sqlite3", "x-workbench": "1" }, body: file }));
@@ -150,7 +153,7 @@ export async function showRecording(id, { trust = false, run = false, at = null 
   const wanted = wish();
   if (session.peek() === null) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
-    const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
+    const found = await call("POST", `${recordingPath(id)}/open`, { real_time: true, trust });
     if (at !== null && wanted() && found.watching.length === 0) {
       const seek = { command: { type: "seek", time: at } };
       await call("POST", `/api/sessions/${found.id}/command`, seek).catch(() => {}); // if it cannot be built, it is shown, and says why

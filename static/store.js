@@ -76,6 +76,9 @@ function takeOne(message) {
   }
 }
 
+/** The length of a tick of the run, or of a program's, which may have none [s]. */
+export const period = computed(() => session.value?.period || 0.01);
+
 /** Returns for how many events before those of the list there is room: fewer than the maximum, as new ones may come. */
 export function roomForEarlier() {
   return 0.9 * MAX_EVENTS - events.value.list.length;

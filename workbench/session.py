@@ -208,12 +208,12 @@ class Session(Broadcast, Receiver):
             self._waiting.take(message)
             return
         launched = self._run_of(worker)
-        if isinstance(message, Facts) and launched is not None and launched is self._loading:
+        if launched is None:
+            return
+        if isinstance(message, Facts) and launched is self._loading:
             self._swap(launched, message)
         shown = launched is self._shown
         match message:
-            case _ if launched is None:
-                return
             case Facts() if shown and message is not self.facts:
                 self.facts = message
                 self._notify_watchers(message)

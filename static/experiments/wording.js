@@ -26,8 +26,7 @@ export function cellText(name, value, { groups }) {
 
 /** Returns the number of finished trials, of all. */
 export function doneText({ done, total }) {
-  const of = total === null ? "" : ` of ${total.toLocaleString("en")}`;
-  return `${done.toLocaleString("en")}${of} ${(total ?? done) === 1 ? "trial" : "trials"}`;
+  return total === null ? counted(done, "trial") : `${done.toLocaleString("en")} of ${counted(total, "trial")}`;
 }
 
 /** Returns a duration in a unit that suits it. */

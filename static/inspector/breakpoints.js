@@ -2,6 +2,7 @@
 
 import { computed, html } from "../vendor/preact.js";
 import { optimistic } from "../parts/optimistic_value.js";
+import { toggled } from "../parts/toggled.js";
 import { sendCommand } from "../server.js";
 import { session, state } from "../store.js";
 
@@ -17,8 +18,7 @@ export const held = computed(() => state.value?.breakpoint ?? null);
 
 /** Sets a breakpoint on a production, or removes it. */
 export function toggleBreakpoint(name) {
-  const now = breakpoints.value;
-  list.set(now.includes(name) ? now.filter((one) => one !== name) : [...now, name]);
+  list.set(toggled(breakpoints.value, name));
 }
 
 /** Shows that the run is paused at a breakpoint. */

@@ -3,6 +3,7 @@
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { ChangeMenu } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
+import { wordsOf } from "../parts/words.js";
 import { runOf, systemsOf } from "./agents.js";
 import { at, production } from "./explanation.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
@@ -68,7 +69,7 @@ function Item({ item, chosen, several }) {
 export function ProductionList({ all, chosen }) {
   const [words, setWords] = useState("");
   const box = useRef(null);
-  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const wanted = wordsOf(words);
   const shown = all.filter(({ system, name }) => wanted.every((word) => `${system} ${name}`.toLowerCase().includes(word)));
   const systems = [...new Set(shown.map(({ system }) => system))];
   const ordered = systems.flatMap((system) => shown.filter((one) => one.system === system));

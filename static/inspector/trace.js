@@ -8,12 +8,14 @@ import { Rows } from "./rows.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 import { askWhy } from "./explanation.js";
 import { Mixed, contactEvents } from "./contacts.js";
+import { toggled } from "../parts/toggled.js";
 import { timeUnit } from "../parts/units.js";
+import { wordsOf } from "../parts/words.js";
 import { furthest, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
 import { buttonTitle } from "../keys.js";
-import { events, session, state } from "../store.js";
+import { events, session, shownRun, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
@@ -22,7 +24,7 @@ const timeWidth = () => (timeUnit(furthest.value) ? "88px" : "112px");
 const wantedWords = remembered("trace words", "");
 
 function testOf(isShown, words, agent) {
-  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const wanted = wordsOf(words);
   return (event) => {
     if (!isShown(event[2])) return false;
     if (agent && event[1] !== agent && !isBelow(event[1], agent)) return false;
@@ -35,7 +37,6 @@ function testOf(isShown, words, agent) {
 function Groups() {
   const box = useRef(null);
   const all = GROUPS.map(({ id }) => id);
-  const toggle = (id) => (groups.value = groups.value.includes(id) ? groups.value.filter((one) => one !== id) : [...groups.value, id]);
   useEffect(() => {
     const close = (event) => {
       if (event.key === "Escape" || (event.type === "pointerdown" && !box.current.contains(event.target))) box.current.open = false;
@@ -47,7 +48,7 @@ function Groups() {
     <summary title="Which events are shown">Events <span class="quiet">${groups.value.length}/${all.length}</span></summary>
     <div class="menu-body" role="group" aria-label="Events that are shown">
       ${GROUPS.map(
-        ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => toggle(id)} />${text}</label>`,
+        ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => (groups.value = toggled(groups.value, id))} />${text}</label>`,
       )}
       <div class="menu-end">
         <button onClick=${() => (groups.value = all)}>All</button>
@@ -90,7 +91,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
 export function FiringTrace() {
   const parts = state.value?.parts;
   const [agent, setAgent] = useState("");
-  const run = `${session.value?.id} ${session.value?.run}`;
+  const run = shownRun.value;
   const [choice, setChoice] = useState({ run, number: null });
   const chosen = choice.run === run ? choice.number : null;
   const setChosen = (number) => setChoice({ run, number });

@@ -12,7 +12,7 @@ import { chunkText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
 import { pictureName, runName, savePicture } from "../parts/picture.js";
 import { nothing } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { period, running, session, state } from "../store.js";
 
 const QUESTION = { type: "explain" };
 const KINDS = { reads: "reads", writes: "writes", asks: "asks", fills: "fills" };
@@ -36,7 +36,7 @@ function graphOf(agent, parts, reasons) {
   const modules = own.filter((path) => ["module", "memory"].includes(parts[path].is));
   const productions = systems.flatMap((system) => parts[system].productions.map((name) => ({ id: keyOf(system, name), system, name })));
   const belongs = new Set(own);
-  const { fired, answered } = justNow(session.value?.period || 0.01, (source) => belongs.has(source));
+  const { fired, answered } = justNow(period.value, (source) => belongs.has(source));
   const known = flows();
   const there = new Set([...buffers, ...modules]);
   const edges = [];

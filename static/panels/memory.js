@@ -13,7 +13,7 @@ import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { remembered } from "../local_storage.js";
 import { nothing } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { running, shownRun, state } from "../store.js";
 import { runTimeText } from "../timeline/seek.js";
 
 const MAX_CHUNKS = 5000; // the maximum number of chunks requested
@@ -94,7 +94,7 @@ function Memory() {
   ];
   const shown = views.some(({ id }) => id === view.value) ? view.value : views[0].id;
   const memory = memories.includes(wanted.value) ? wanted.value : memories[0];
-  return html`<div class="memory" key="${session.value?.id} ${session.value?.run}">
+  return html`<div class="memory" key=${shownRun.value}>
     <${AtStart} />
     ${views.length > 1 || memories.length > 1
       ? html`<div class="tools heads">

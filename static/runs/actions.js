@@ -5,7 +5,7 @@ import { signal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
-import { call, sendFile, sinceNow } from "../server.js";
+import { call, recordingPath, sendFile, sinceNow } from "../server.js";
 import { me, notify, session } from "../store.js";
 import { forgetRun, listRuns, runs } from "./list.js";
 import { chosen } from "./table.js";
@@ -82,7 +82,7 @@ export async function replayRun(run) {
   if (cancels.has(run.id)) return;
   const cancel = new AbortController();
   cancels.set(run.id, cancel);
-  const path = `/api/recordings/${run.id}/replay`;
+  const path = `${recordingPath(run.id)}/replay`;
   note(run.id, { since: Date.now(), share: 0 });
   const look = setInterval(async () => {
     const progress = await call("GET", path, undefined, cancel.signal).catch(() => null);
@@ -139,7 +139,7 @@ export async function deleteRuns(all) {
   for (const [n, run] of list.entries()) {
     busy.value = { text: "Deleting", done: n, of: list.length };
     try {
-      const { trash } = await call("POST", `/api/recordings/${run.id}/delete`, {});
+      const { trash } = await call("POST", `${recordingPath(run.id)}/delete`, {});
       forgetRun(run.id);
       deleted.push({ run, trash });
     } catch (error) {

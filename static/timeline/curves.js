@@ -5,7 +5,7 @@
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
 import { isLeft, request } from "../server.js";
-import { alive, hurried, notify, running, session, state, way } from "../store.js";
+import { alive, hurried, notify, period, running, session, state, way } from "../store.js";
 import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { exactTime } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
@@ -214,7 +214,7 @@ let newer = false; // whether the newest stretch was requested last, while the r
 /** What known data belongs to: the way that the run took to the present, and whether there is a world, as a program may create one later. */
 const history = () => `${way.peek()} ${Boolean(session.peek()?.world)}`;
 
-const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart count as the same [s]
+const near = () => period.peek() / 2; // moments that are no farther apart count as the same [s]
 
 function changed() {
   curvesVersion.value = curvesVersion.peek() + 1;
@@ -314,7 +314,7 @@ function needsEvents() {
 /** Returns the next stretch to request, {from, to, most, whole}; null if everything needed now is known. */
 function next(list) {
   const end = furthest.peek();
-  const tick = session.peek()?.period || 0.01;
+  const tick = period.peek();
   const bodies = list.some(isOfBody);
   const newest = (from, most) => ({ from, to: end, most, whole: !bodies || (end - from) / tick < most - 2 });
   if (known.until === null) return newest(0, OVERVIEW);

@@ -2,6 +2,7 @@
 
 import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
+import { seriesColour } from "../parts/curve.js";
 import { Former } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./lane_builders.js";
@@ -121,7 +122,7 @@ export class Lanes {
 
   /** Returns the colour of a name: different for each, as far as there are enough. */
   tone(name) {
-    if (!this.tones.has(name)) this.tones.set(name, `series-${(this.tones.size % 6) + 1}`);
+    if (!this.tones.has(name)) this.tones.set(name, seriesColour(this.tones.size));
     return this.tones.get(name);
   }
 

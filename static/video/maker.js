@@ -3,7 +3,7 @@
 
 import { exactTime } from "../parts/units.js";
 import { request, sendCommand } from "../server.js";
-import { listeners, session, state, way } from "../store.js";
+import { listeners, period, session, state, way } from "../store.js";
 import { furthest, requestThere } from "../timeline/seek.js";
 import { encoderFor, VideoFile } from "./encoder.js";
 
@@ -27,10 +27,10 @@ export function countOf({ begin, end, speed }) {
 
 /** Returns the time of the run that a picture shows [s]: that of the nearest tick which the run has reached. */
 function timeOf({ begin, end, speed }, number) {
-  const period = session.peek().period || 0.01;
-  const last = Math.floor(furthest.peek() / period + 1e-6);
-  const ticks = Math.round(Math.min(end, begin + (number * speed) / RATE) / period);
-  return exactTime(Math.min(ticks, last) * period);
+  const tick = period.peek();
+  const last = Math.floor(furthest.peek() / tick + 1e-6);
+  const ticks = Math.round(Math.min(end, begin + (number * speed) / RATE) / tick);
+  return exactTime(Math.min(ticks, last) * tick);
 }
 
 /** Returns the window of the 3D view, if it has drawn a scene. */
