@@ -86,10 +86,6 @@ class ExperimentProgress(ExperimentEvent, frozen=True, kw_only=True, tag="progre
 class ExperimentEnd(ExperimentEvent, frozen=True, kw_only=True, tag="end"):
     """An experiment has ended normally: all trials have run, or it was stopped."""
 
-    done: int
-    total: int
-    failures: int
-
 
 AnyExperimentEvent = ExperimentFacts | TriedFacts | ExperimentProgress | ExperimentEnd
 EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExperimentEvent)

@@ -117,7 +117,6 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
         if mine != its and not (mine is not None and its is not None and _alike(mine, its)):
             after = [[list(event) for event in islice(events, CONTEXT)] for events in (left, right)]
             difference = {
-                "number": number,
                 "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
                 "events": [None if event is None else list(event) for event in (mine, its)],
                 "before": [list(event) for event in before],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import itertools
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -78,9 +77,10 @@ def _read(folder: Path, name: str) -> str:
 
 
 def _scripts(folder: Path) -> str:
-    """Returns the scripts of the file as one: its own, and a module of the page that imports nothing."""
+    """Returns the scripts of the file as one: its own, and modules of the page that import nothing."""
     own = [folder / f"{name}.js" for name in ("space", "solids", "shades", "camera", "drawing", "events", "player")]
-    texts = [path.read_text(encoding="utf-8") for path in (own[0], static() / "parts" / "units.js", *own[1:])]
+    shared = [static() / "scene" / "space.js", static() / "parts" / "units.js"]
+    texts = [path.read_text(encoding="utf-8") for path in (own[0], *shared, *own[1:])]
     return "\n".join(re.sub("^export ", "", text, flags=re.MULTILINE) for text in texts)
 
 
@@ -211,13 +211,11 @@ def _scene(simulation: RecordedSimulation, agents: Sequence[str], scenes: int) -
 
 def _stage(stage: SceneFraming, bodies: list[int]) -> dict[str, Any]:
     """Returns the part of the scene that is shown first, and the shape that the view follows: the body, or the next one after it."""
-    low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
-    corners = stage.corners if len(stage.corners) <= MAX_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
     follow = next((number for number, body in enumerate(bodies) if body >= stage.body), 0)
     return {
-        "corners": corners.round(3).tolist(),
-        "low": low.tolist(),
-        "high": high.tolist(),
+        "corners": stage.corners_within(MAX_STAGED).round(3).tolist(),
+        "low": stage.low.tolist(),
+        "high": stage.high.tolist(),
         "ahead": stage.ahead.tolist(),
         "follow": follow,
     }
