@@ -1,6 +1,6 @@
 // The firing trace: the events, line by line, filtered as the user chooses.
 
-import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
+import { html, useMemo, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventMomentText, eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
@@ -8,6 +8,7 @@ import { Rows } from "./rows.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 import { askWhy } from "./explanation.js";
 import { Mixed, contactEvents } from "./contacts.js";
+import { Menu } from "../parts/menu.js";
 import { toggled } from "../parts/toggled.js";
 import { timeUnit } from "../parts/units.js";
 import { wordsOf } from "../parts/words.js";
@@ -35,27 +36,16 @@ function testOf(isShown, words, agent) {
 }
 
 function Groups() {
-  const box = useRef(null);
   const all = GROUPS.map(({ id }) => id);
-  useEffect(() => {
-    const close = (event) => {
-      if (event.key === "Escape" || (event.type === "pointerdown" && !box.current.contains(event.target))) box.current.open = false;
-    };
-    for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, close);
-    return () => ["pointerdown", "keydown"].forEach((kind) => removeEventListener(kind, close));
-  }, []);
-  return html`<details class="menu" ref=${box}>
-    <summary title="Which events are shown">Events <span class="quiet">${groups.value.length}/${all.length}</span></summary>
-    <div class="menu-body" role="group" aria-label="Events that are shown">
-      ${GROUPS.map(
+  return html`<${Menu} class="events-menu" label="Events that are shown" look="" face=${html`Events <span class="quiet">${groups.value.length}/${all.length}</span>`}>
+    ${() => html`${GROUPS.map(
         ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => (groups.value = toggled(groups.value, id))} />${text}</label>`,
       )}
       <div class="menu-end">
         <button onClick=${() => (groups.value = all)}>All</button>
         <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>Defaults</button>
-      </div>
-    </div>
-  </details>`;
+      </div>`}
+  <//>`;
 }
 
 /** Takes the run to its first stop after an event. */

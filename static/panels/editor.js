@@ -8,7 +8,7 @@ import { focusText, goToLine, keys, leaveText, showText } from "../editor/code.j
 import { Conflict } from "../editor/conflict.js";
 import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
 import { duplicate, makeNew, remove, rename } from "../editor/files.js";
-import { ACTIONS, INSERTIONS, Menu } from "../editor/menu.js";
+import { ACTIONS, EditorMenu, INSERTIONS } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { Unchanged } from "../editor/unchanged.js";
 import { saveAndRun } from "../editor/stale_run.js";
@@ -114,7 +114,7 @@ function Files({ path, document }) {
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
     ${tool("check", "Check the model without a run: a file with a function build is executed for the first 10 ms of the run, any other file is only compiled", () => checkByLoading(document))}
-    <${Menu} disabled=${!document} />
+    <${EditorMenu} disabled=${!document} />
   </div>`;
 }
 
