@@ -534,7 +534,7 @@ class Experiments:
         if not folder.made_here:
             if not trust:
                 raise PermissionNeededError(
-                    "this workbench did not make the experiment (or it was changed since), and the code in it would be run: "
+                    "this installation did not make the experiment (or it was changed since), and the code in it would be run: "
                     'send "trust": true if you know where it comes from'
                 )
             folder.seal()

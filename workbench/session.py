@@ -368,8 +368,8 @@ class Session(Broadcast, Receiver):
 
         self.run_task(end())
 
-    async def leave_way(self, command: object) -> bool:
-        """Sends a command to a run that is on its way to another time; returns whether it was, and has answered soon."""
+    async def cancel_seek(self, command: object) -> bool:
+        """Sends a command to a run whose seek is in progress; returns whether one was, and the run has answered soon."""
         if self.is_loading or self.state is None or self.state.target is None:
             return False
         with suppress(TimeoutError):

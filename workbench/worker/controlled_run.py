@@ -52,7 +52,7 @@ class ControlledRun(ABC):
 
     @property
     def target(self) -> int | None:
-        """The time to which the run is on its way [us]; None if it is not going to another time."""
+        """The time of the seek that is in progress [us]; None if there is none."""
         return None
 
     @property

@@ -133,7 +133,7 @@ class State(Message, frozen=True, kw_only=True):
     furthest: float
     """The furthest time that the run has reached [s]."""
     target: float | None = None
-    """The time to which the run is on its way [s]; None if it is not going to another time."""
+    """The time of the seek that is in progress [s]; None if there is none."""
     wanted: float | None
     measured: float | None
     """Measured speed as a multiple of real time; None if the run is not going on."""

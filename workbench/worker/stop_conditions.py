@@ -19,7 +19,7 @@ Touches = frozenset[Contact]
 
 
 @dataclass
-class Watch:
+class StopConditions:
     """Holds the conditions at which the run stops next, apart from users' commands."""
 
     goal: int | None = None
@@ -42,9 +42,9 @@ class Watch:
     touching: Touches = field(default_factory=Touches)
     """The contacts that existed at the last check, which do not count as new."""
 
-    def renewed(self, **wanted: Any) -> Watch:
+    def renewed(self, **wanted: Any) -> StopConditions:
         """Returns new stop conditions with the same breakpoints."""
-        return Watch(breakpoints=self.breakpoints, **wanted)
+        return StopConditions(breakpoints=self.breakpoints, **wanted)
 
     @property
     def of_events(self) -> bool:
