@@ -14,7 +14,7 @@ import msgspec
 
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.client_feed import MAX_NOTICES, Broadcast, Feed, Raw
-from workbench.event_log import EventLog
+from workbench.event_log import LatestEvents
 from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
@@ -283,7 +283,7 @@ class Session(Broadcast, Receiver):
             self._recordings.discard(useless)
         self.run += 1
         self.epoch += 1
-        self.log = EventLog()
+        self.log = LatestEvents()
         self.facts, self.state, self.branched, launched.stuck = facts, None, None, None
         self._cuts.clear()
         self._given.clear()
@@ -690,7 +690,7 @@ class Session(Broadcast, Receiver):
             watcher(what)
 
 
-def never_begun(state: State | None, log: EventLog) -> bool:
+def never_begun(state: State | None, log: LatestEvents) -> bool:
     """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
 
     Args:

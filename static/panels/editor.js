@@ -12,7 +12,7 @@ import { ACTIONS, EditorMenu, INSERTIONS } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { Unchanged } from "../editor/unchanged.js";
 import { saveAndRun } from "../editor/stale_run.js";
-import { Strip } from "../editor/banner.js";
+import { FileBanner } from "../editor/banner.js";
 import { command, commandsOf } from "../commands.js";
 import { buttonTitle, noteKey } from "../keys.js";
 import { goToTab } from "../open_tab.js";
@@ -165,7 +165,7 @@ function Editor() {
     ${compares ? html`<${Conflict} document=${document} choose=${(which) => choose(document, which)} />` : null}
     <div class="code" ref=${place} hidden=${!document || compares}></div>
     ${document
-      ? html`${compares ? null : html`<${Unchanged} document=${document} /><${Strip} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
+      ? html`${compares ? null : html`<${Unchanged} document=${document} /><${FileBanner} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
       : html`<div class="empty">
           <p class=${error ? "bad" : ""}>${error ?? (path ? "Being read …" : "No file is open. Choose one above, or make a new model.")}</p>
           ${path && !error ? null : html`<button onClick=${makeNew}>Make a new model</button>`}

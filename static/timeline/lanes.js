@@ -3,7 +3,7 @@
 import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
 import { seriesColour } from "../parts/curve.js";
-import { Former } from "./commands.js";
+import { ReplacedValues } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./lane_builders.js";
 
@@ -101,7 +101,7 @@ export class Lanes {
     this.lanes = new Map();
     this.tones = new Map(); // the names of colours by name
     this.asked = new Map();
-    this.former = new Former();
+    this.former = new ReplacedValues();
     this.learns = false; // whether utilities are learned
     this.now = 0;
     this.begin = null;

@@ -22,7 +22,7 @@ from workbench.worker.stop_conditions import Touches
 
 
 class LossError(SimulationError):
-    """A change is refused because what lies ahead of it would be lost; see `Change.drop`."""
+    """A change is refused because what lies ahead of it would be lost; see `RunChange.drop`."""
 
 
 class ControlledRun(ABC):

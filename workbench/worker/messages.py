@@ -233,7 +233,7 @@ class Reply(Message, frozen=True, kw_only=True):
     """The result as JSON."""
     error: str | None = None
     loses: bool = False
-    """Whether it was refused only because something would be lost; see `Change.drop`."""
+    """Whether it was refused only because something would be lost; see `RunChange.drop`."""
     line: int | None = None
     """The line of a text that was the reason to refuse a question about it."""
 
