@@ -532,10 +532,10 @@ def test_in_the_trace_a_change_by_hand_is_read_before_its_effect(pages: Callable
 
 
 TEXTS = """async ([changes, live, events]) => {
-  const [{ session }, { Former, commandText }, { batch }] = await Promise.all(
+  const [{ session }, { ReplacedValues, commandText }, { batch }] = await Promise.all(
     ["store.js", "timeline/commands.js", "vendor/preact.js"].map((name) => part(name)),
   );
-  const former = new Former();
+  const former = new ReplacedValues();
   const texts = [];
   batch(() => {
     session.value = { changes, live, parameters: {}, openings: [] };
