@@ -3,7 +3,7 @@
 
 import { effect, signal } from "./vendor/preact.js";
 import { request } from "./server.js";
-import { addEarlier, alive, events, replaceEvents, roomForEarlier, running, session, state, way } from "./store.js";
+import { addEarlier, alive, events, replaceEvents, roomForEarlier, running, session, state, history } from "./store.js";
 
 const AT_ONCE = 5000; // the number of events per request: more would delay commands
 const AROUND = 45_000; // the number of events on each side of a moment of which the page has none
@@ -26,7 +26,7 @@ function lacking() {
 }
 
 /** Returns what the page has now, to be compared with what it has when an answer comes. */
-const held = () => ({ way: way.peek(), list: events.peek().list, first: events.peek().first });
+const held = () => ({ history: history.peek(), list: events.peek().list, first: events.peek().first });
 const holds = (before) => Object.entries(held()).every(([name, value]) => value === before[name]);
 
 /** Requests events; returns fewer than asked for if the run has no more. */
@@ -67,7 +67,7 @@ let asked = ""; // what was requested last: what did not come is not requested a
 effect(() => {
   const wanted = lacking();
   if (wanted === null || fetching.value) return;
-  const all = JSON.stringify([way.value, wanted, events.value.first]);
+  const all = JSON.stringify([history.value, wanted, events.value.first]);
   if (all === asked) return;
   asked = all;
   fetching.value = true;

@@ -70,7 +70,7 @@ function isTaken(element, event) {
   return pointed.has(element) && !element.matches(SLIDER) && isOwn(element, event);
 }
 
-/** Returns the title of a command's button: its text, or another one, and its key. */
+/** Returns the title of the button of a command, or of a key that only works in some part of the page: its text, or another one, and its key. */
 export function buttonTitle({ text, key }, shown = text) {
   return key ? `${shown} (${keyText(key)})` : shown;
 }

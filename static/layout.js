@@ -96,4 +96,4 @@ export const layoutCommands = Object.fromEntries(
 /** Swaps the 3D view and the panels. */
 export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isAreaThere("scene"), why: () => notThere("scene") });
 
-command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = ""), ready: () => maximised.value !== null, why: () => "No part is maximised." });
+command({ text: "Restore the layout after a part was maximised", key: "Escape", group: "Page", work: () => (largest.value = ""), ready: () => maximised.value !== null, why: () => "No part is maximised." });

@@ -3,7 +3,7 @@
 
 import { computed } from "./vendor/preact.js";
 import { toShowOne } from "./bar/models.js";
-import { alive as stated, connected, events, opening, restarted, session, state } from "./store.js";
+import { alive as stated, connected, events, opening, period, restarted, session, state } from "./store.js";
 import { runTimeText } from "./timeline/seek.js";
 import { embedded } from "./windows.js";
 
@@ -49,9 +49,8 @@ export function lastEvent() {
 
 /** Time may pass before a run ends in which nothing happens, such as that in which a memory knows what was retrieved recently. */
 function endedLine(facts) {
-  const { period = 0.01 } = session.value;
   const last = lastEvent();
-  const isQuiet = last !== null && facts.furthest - last > 2 * period;
+  const isQuiet = last !== null && facts.furthest - last > 2 * period.value;
   return `${withReason(facts)}${isQuiet ? `; the last event was at ${runTimeText(last)}` : ""}`;
 }
 

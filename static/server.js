@@ -11,9 +11,9 @@ export const AGAIN = 1000;
 let socket = null;
 let shown = null;
 let number = 0;
-let wishes = 0;
+let choices = 0;
 const waiting = new Map();
-const held = []; // updates that wait to be drawn
+const updates = []; // what has arrived and waits to be drawn
 let timer = 0;
 
 /** Calls the REST interface; returns the response, or throws an Error with the reason, with `status` and `body`. An AbortSignal
@@ -23,6 +23,9 @@ export async function call(method, path, body, signal) {
   const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
   return answered(await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal }));
 }
+
+/** Returns the address of a recording. */
+export const recordingPath = (id) => `/api/recordings/${encodeURIComponent(id)}`;
 
 /** Sends a recording file; returns the response, or throws an Error with the reason. */
 export async function sendFile(path, file) {
@@ -79,15 +82,15 @@ function refusal(response, body) {
 
 /** Called when the user chooses something that takes a while to show; returns a function that checks whether it is still wanted:
  * of two choices in quick succession, the first may be ready last. */
-export function wish() {
-  wishes += 1;
+export function newChoice() {
+  choices += 1;
   return sinceNow();
 }
 
 /** Returns a function that checks whether the user has chosen nothing else since now. */
 export function sinceNow() {
-  const now = wishes;
-  return () => now === wishes;
+  const now = choices;
+  return () => now === choices;
 }
 
 /** Shows a session from now on. One that is shown already stays attached: another `attach` would lose the pending replies. */
@@ -106,7 +109,7 @@ export const isLeft = (error) => error.left === true;
 /** Shows no session until another one is ready; messages of the previous one are ignored from now on. */
 function leave() {
   shown = null;
-  held.length = 0;
+  updates.length = 0;
   forget();
   abandon(() => Object.assign(new Error("another run is shown now"), { left: true }));
 }
@@ -126,7 +129,7 @@ export function sessionOf(model, sessions) {
 /** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text; a run that still waits at
  * its start is always one of the current text. Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showModel(model, { run = false } = {}) {
-  const wanted = wish();
+  const wanted = newChoice();
   if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessionOf(model, sessions);
@@ -147,10 +150,10 @@ export async function showModel(model, { run = false } = {}) {
  * With `at` it is at that moment [s] when it is shown, unless another page shows it already. Returns whether it is shown: the user may have
  * chosen something else meanwhile. */
 export async function showRecording(id, { trust = false, run = false, at = null } = {}) {
-  const wanted = wish();
+  const wanted = newChoice();
   if (session.peek() === null) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
-    const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
+    const found = await call("POST", `${recordingPath(id)}/open`, { real_time: true, trust });
     if (at !== null && wanted() && found.watching.length === 0) {
       const seek = { command: { type: "seek", time: at } };
       await call("POST", `/api/sessions/${found.id}/command`, seek).catch(() => {}); // if it cannot be built, it is shown, and says why
@@ -184,7 +187,7 @@ export function connect() {
     const message = JSON.parse(data);
     if (message.type === "refused") refused(message);
     if (message.type !== "update" || message.of !== shown) return; // messages of the previously shown session may still arrive
-    held.push(message);
+    updates.push(message);
     // A pause of the run is shown at once.
     if (message.state && message.state.status !== "running") update();
     else updateSoon();
@@ -237,7 +240,7 @@ function again() {
 function update() {
   clearTimeout(timer);
   timer = 0;
-  const messages = held.splice(0);
+  const messages = updates.splice(0);
   frameBudget.drawing();
   take(messages);
   frameBudget.hurried = hurried.peek();
@@ -252,7 +255,7 @@ function update() {
 }
 
 /** Functions that send what waits for an earlier answer; it is sent before any other command. */
-export const heldBack = new Set();
+export const unsent = new Set();
 
 /** Sends a command or a question; returns its result, or throws an Error with the reason, with `loses` if only because something would be lost. */
 export function request(what) {
@@ -261,7 +264,7 @@ export function request(what) {
       reject(new Error(shown === null ? "no run is shown" : "there is no connection to the workbench"));
       return;
     }
-    for (const send of heldBack) send();
+    for (const send of unsent) send();
     number += 1;
     waiting.set(number, { resolve, reject });
     socket.send(JSON.stringify({ id: number, command: what }));

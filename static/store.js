@@ -45,7 +45,7 @@ export const moment = computed(() => `${session.value?.id} ${stated.value} ${sta
 /** The run and the number of the known events, for a new connection. */
 export const known = { run: 0, epoch: 0 };
 /** Identifies the history of the run, as a text: it differs between runs, and within a run after a change in its past. */
-export const way = signal("");
+export const history = signal("");
 
 /** Called with each update before it is applied: {of, run, events?}, for code that keeps more events than the list. */
 export const listeners = new Set();
@@ -64,7 +64,7 @@ function takeOne(message) {
   if (message.you) me.value = message.you;
   if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
   Object.assign(known, { run: message.run, epoch: message.epoch });
-  way.value = `${session.value?.id} ${message.run} ${message.epoch}`;
+  history.value = `${session.value?.id} ${message.run} ${message.epoch}`;
   if ("state" in message) {
     state.value = message.state;
     stated.value = message.run;
@@ -75,6 +75,9 @@ function takeOne(message) {
     addNotices(message.notices.filter((notice) => !numbers.has(notice.number)));
   }
 }
+
+/** The length of a tick of the run, or of a program's, which may have none [s]. */
+export const period = computed(() => session.value?.period || 0.01);
 
 /** Returns for how many events before those of the list there is room: fewer than the maximum, as new ones may come. */
 export function roomForEarlier() {
@@ -202,6 +205,6 @@ export function forget() {
     notices.value = [];
     stated.value = 0;
     Object.assign(known, { run: 0, epoch: 0 });
-    way.value = "";
+    history.value = "";
   });
 }

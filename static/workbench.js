@@ -44,7 +44,7 @@ noteKey("Enter", "Go to a line of the trace; open a run", "Panels");
 noteKey("Delete", "Delete the chosen runs", "Panels", "models folder");
 
 /** A strip at the edge of the page, in the place of a part that is collapsed. */
-function Strip({ area }) {
+function CollapsedArea({ area }) {
   const { expand } = layoutCommands[area];
   return html`<button class="strip of-${area}" title=${expand.text} onClick=${() => run(expand)}><${Icon} name=${area === "timeline" ? "up" : "layout"} /><span>${AREAS[area]}</span></button>`;
 }
@@ -54,9 +54,9 @@ function Work() {
   const kinds = [hasWorld.value ? "" : "bodiless", swapped.value ? "swapped" : "", noScene ? "no-scene" : "", noPanels ? "no-panels" : ""];
   return html`<main class="work ${kinds.join(" ")}">
     <${Scene} />
-    ${noScene && hasWorld.value ? html`<${Strip} area="scene" />` : null}
+    ${noScene && hasWorld.value ? html`<${CollapsedArea} area="scene" />` : null}
     <${Splitter} size=${panelsWidth} along="columns" reversed=${swapped.value} label="Width of the panels" least=${280} most=${() => innerWidth - MIN_SCENE} />
-    ${noPanels ? html`<${Strip} area="panels" />` : null}
+    ${noPanels ? html`<${CollapsedArea} area="panels" />` : null}
     <section class="side" aria-label="Panels">
       <${Tabs} label="Panels" tabs=${TABS} shown=${openTab} more=${html`<${AreaMenu} area="panels" opening=${openPanel} />`} />
     </section>
@@ -74,7 +74,7 @@ function WholePage() {
           <${Splitter} size=${timelineHeight} along="rows" label="Height of the timeline" least=${80} most=${() => innerHeight - 300} />
           <${Timeline} />
         </section>`
-      : html`<nav aria-label="Collapsed"><${Strip} area="timeline" /></nav>`}
+      : html`<nav aria-label="Collapsed"><${CollapsedArea} area="timeline" /></nav>`}
     <${StatusLine} />
   </div>`;
 }

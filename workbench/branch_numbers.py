@@ -1,4 +1,4 @@
-"""Gives recordings of a tree that are called the same a number each: the second branch at 0.10 s is `at 0.10 s (2)`.
+"""Numbers the recordings of a tree that are called the same: the second branch at 0.10 s is `at 0.10 s (2)`.
 
 A number is given once, when its recording is first listed, and kept in one file beside the recordings: it stays when others are deleted,
 and a recording that is restored from the trash has its number again.

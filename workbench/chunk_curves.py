@@ -191,7 +191,7 @@ class ChunkCurves:
         return cursor
 
     def _advance(self, known: _Known, cursor: _Cursor, time: int) -> None:
-        """Takes the events up to a time."""
+        """Adds the events up to a time."""
         events = known.events
         while cursor.taken < len(events) and events[cursor.taken].event.time_us <= time:
             _, own, event = events[cursor.taken]

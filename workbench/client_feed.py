@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from workbench.event_log import EventLog
+from workbench.event_log import LatestEvents
 
 MAX_NOTICES = 500
 MAX_REPLIES = 1_000
@@ -32,7 +32,7 @@ class Broadcast(ABC):
         """The number of the run on screen."""
         self.epoch: int = 0
         """Counts how often the run has been replaced, or cut and continued differently."""
-        self.log = EventLog()
+        self.log = LatestEvents()
         """The events of the run."""
         self.notices: deque[tuple[int, bytes]] = deque(maxlen=MAX_NOTICES)
         """The notices to the user, numbered, as JSON."""

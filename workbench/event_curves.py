@@ -197,7 +197,7 @@ class EventCurves:
     # -- events
 
     def _buffer(self, source: str, data: Mapping[str, Any]) -> None:
-        """Takes the slots of a buffer's chunk that hold numbers; those of another chunk end."""
+        """Adds the slots of a buffer's chunk that hold numbers; those of another chunk end."""
         chunk: Mapping[str, Any] | None = data["chunk"]
         self._last(chunk is not None, f"{source} full", "time full")
         now = set[str]()
@@ -213,7 +213,7 @@ class EventCurves:
         self._slots[source] = now
 
     def _state(self, source: str, data: Mapping[str, Any]) -> None:
-        """Takes the attributes that change; most are settings, and stay as they are."""
+        """Adds the attributes that change; most are settings, and stay as they are."""
         for name, value in data.items():
             curve, number = f"{source}.{name}", as_number(value)
             first = self._firsts.get(curve)
@@ -239,7 +239,7 @@ class EventCurves:
             self._hold(self._now, number, f"{_path(source, data['production'])} learned {part}", f"learned {part}")
 
     def _request(self, source: str, data: Mapping[str, Any]) -> None:
-        """Takes what a memory has found: the activations of the candidates with their parts, and how long the retrieval takes."""
+        """Adds what a memory has found: the activations of the candidates with their parts, and how long the retrieval takes."""
         candidates = data.get("candidates")
         if candidates is None:
             return

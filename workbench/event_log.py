@@ -16,7 +16,7 @@ MAX_BYTES = 500_000
 """Maximum size of the events in one message [bytes]; a single larger event is sent alone."""
 
 
-class EventLog:
+class LatestEvents:
     """Holds the latest events of one run, numbered from 0."""
 
     def __init__(self) -> None:

@@ -57,7 +57,8 @@ class ExperimentFacts(ExperimentEvent, frozen=True, kw_only=True, tag="facts"):
     """The values and numbers that replace those of the design."""
     measures: list[dict[str, Any]] = []
     """The measures that the design names: name, unit, meaning, over."""
-    seed: int = 0
+    seed: int | str = 0
+    """For pages, a number that JavaScript would round is a text."""
     model: str = ""
     """The model file."""
     parameters: list[dict[str, Any]] = []
@@ -85,10 +86,6 @@ class ExperimentProgress(ExperimentEvent, frozen=True, kw_only=True, tag="progre
 class ExperimentEnd(ExperimentEvent, frozen=True, kw_only=True, tag="end"):
     """An experiment has ended normally: all trials have run, or it was stopped."""
 
-    done: int
-    total: int
-    failures: int
-
 
 AnyExperimentEvent = ExperimentFacts | TriedFacts | ExperimentProgress | ExperimentEnd
 EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExperimentEvent)
@@ -96,6 +93,11 @@ EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExper
 
 
 # -- the process
+
+
+def processors() -> int:
+    """Returns the number of processors that this process may use, where the system says it; else the number that the computer has."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class ExperimentRunError(Actr3dError):

@@ -14,7 +14,7 @@ import msgspec
 from actr3d.recording.key import is_sealed, make_key, seal
 from actr3d.replacing import replace_file
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
-from workbench.files import file_stamp, is_writable
+from workbench.files import database_stamp, is_writable
 from workbench.retention import begun
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
@@ -94,7 +94,7 @@ class ExperimentFolder:
     def table_stamp(self) -> Any:
         """A value that changes whenever the table changes; None if there is none."""
         table = self.table
-        return None if table is None else file_stamp(table, table.with_name(f"{table.name}-wal"))
+        return None if table is None else database_stamp(table)
 
     @property
     def elsewhere(self) -> Path:

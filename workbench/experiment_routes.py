@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -11,16 +10,16 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 from pydantic import Field, TypeAdapter, ValidationError
 
-from actr3d.values import escape_surrogates, to_json
+from actr3d.values import to_json
 from workbench.design_files import MOST, CheckRequest, Level, StartRequest, Workers, designs_of
 from workbench.disconnects import while_connected
-from workbench.experiment_command import ExperimentFacts, ExperimentRunError
+from workbench.experiment_command import ExperimentFacts, ExperimentRunError, processors
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile
 from workbench.protocol import problem_of
 from workbench.recording_routes import Trusting
-from workbench.routes import Id, sessions_of
+from workbench.routes import Id, code_json, json_response, made, sessions_of
 
 router = APIRouter(prefix="/api")
 
@@ -62,17 +61,17 @@ def experiments_of(request: Request) -> Experiments:
 def designs(request: Request) -> dict[str, Any]:
     """Lists the designs of the library and of the model files, without executing them.
 
-    `processors` is how many this computer has, `most` the greatest numbers with which an experiment can be started.
+    `processors` is how many experiments can use, `most` the greatest numbers with which an experiment can be started.
     """
     outlines = [asdict(outline) for outline in designs_of(sessions_of(request).folder)]
-    return {"designs": outlines, "processors": os.cpu_count() or 1, "most": MOST}
+    return {"designs": outlines, "processors": processors(), "most": MOST}
 
 
 @router.post("/designs/check")
 async def check_design(request: Request, body: CheckRequest) -> Response:
     """Checks a design and returns its facts; with `trial`, also `seconds_a_trial`, which takes longer. 422 if it is not valid."""
     work = experiments_of(request).check(body)
-    return _json(await while_connected(work, request.receive))
+    return json_response(to_json(await while_connected(work, request.receive)))
 
 
 # -- experiments
@@ -82,20 +81,20 @@ async def check_design(request: Request, body: CheckRequest) -> Response:
 async def experiments(request: Request) -> Response:
     """Lists the newest experiments, newest first: state, progress, rate [1/s], remaining time [s]; `total` is the number of all."""
     total, listed = await experiments_of(request).listing()
-    return _json({"total": total, "experiments": listed})
+    return json_response(to_json({"total": total, "experiments": listed}))
 
 
 @router.post("/experiments", status_code=201)
 async def start_experiment(request: Request, body: StartRequest) -> Response:
     """Starts an experiment, and returns its `id` once its design has been checked; 422 if it is not valid."""
     name = await experiments_of(request).start(body)
-    return _json(await experiments_of(request).one(name), 201)
+    return json_response(to_json(await experiments_of(request).one(name)), 201)
 
 
 @router.get("/experiments/{experiment}")
 async def experiment(request: Request, experiment: Id) -> Response:
     """Returns the state of an experiment, with its `facts`: factors, groups, description."""
-    return _json(await experiments_of(request).one(experiment))
+    return json_response(to_json(await experiments_of(request).one(experiment)))
 
 
 @router.post("/experiments/{experiment}/stop")
@@ -110,7 +109,7 @@ async def resume_experiment(request: Request, experiment: Id, body: ResumeReques
     """Continues an experiment; 409 if it is already running, 403 if this installation did not make it, unless `trust` is true."""
     said = body or ResumeRequest()
     await experiments_of(request).resume(experiment, said.workers, trust=said.trust)
-    return _json(await experiments_of(request).one(experiment))
+    return json_response(to_json(await experiments_of(request).one(experiment)))
 
 
 @router.post("/experiments/{experiment}/delete")
@@ -122,9 +121,7 @@ async def delete_experiment(request: Request, experiment: Id) -> dict[str, Any]:
 @router.get("/experiments/{experiment}/code")
 def experiment_code(request: Request, experiment: Id) -> dict[str, Any]:
     """Returns the code that continuing an experiment, or opening one of its trials, runs; see `/recordings/{recording}/code`."""
-    code = experiments_of(request).folder(experiment).code()
-    helpers = {escape_surrogates(name): escape_surrogates(text) for name, text in code["helpers"].items()}
-    return {**code, "file": escape_surrogates(code["file"]), "source": escape_surrogates(code["source"]), "helpers": helpers}
+    return code_json(**experiments_of(request).folder(experiment).code())
 
 
 # -- what it has found
@@ -146,11 +143,10 @@ async def rows(
     `where` is a JSON object with the values that the rows have, by column; `sort` a column; with `failed` only failed trials.
     """
     options = {"first": first, "most": most, "where": _where(where), "sort": sort, "down": down, "failed": failed}
-    experiments = experiments_of(request)
-    table = experiments.folder(experiment).table
+    table = experiments_of(request).folder(experiment).table
     if table is None:
-        return _json({"total": 0, "first": first, "columns": [], "rows": []})
-    return OpenFile(await while_connected(experiments.readers.make("trial rows", table, **options), request.receive), "application/json")
+        return json_response(to_json({"total": 0, "first": first, "columns": [], "rows": []}))
+    return OpenFile(await made(request, "trial rows", table, **options), "application/json")
 
 
 @router.get("/experiments/{experiment}/means")
@@ -179,7 +175,7 @@ async def means(
     for folder in map(experiments_of(request).folder, names):
         known, table = folder.facts, folder.table
         if table is None and beside is None:
-            return _json({"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []})
+            return json_response(to_json({"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []}))
         if known is None or table is None:
             raise ExperimentRunError("its factors are not known" if known is None else "none of its trials has finished")
         facts.append(known)
@@ -190,8 +186,7 @@ async def means(
         for one in facts
     ]
     options = {"x": x, "by": by or [], "measure": measure, "over": over, "factors": sorted(factors), "defaults": defaults}
-    work = experiments_of(request).readers.make("trial means", *tables, **options)
-    return OpenFile(await while_connected(work, request.receive), "application/json")
+    return OpenFile(await made(request, "trial means", *tables, **options), "application/json")
 
 
 @router.post("/experiments/{experiment}/trial")
@@ -225,7 +220,7 @@ def report_file(request: Request, experiment: Id, folder: Literal["figures", "ta
 def _report_file(request: Request, experiment: str, file: str, download: str | None = None) -> Response:
     path = experiments_of(request).folder(experiment).report_file(file)
     if path is None:
-        return _json({"error": "the report has no such file, or it has not been made yet"}, 404)
+        return json_response(to_json({"error": "the report has no such file, or it has not been made yet"}), 404)
     return OpenFile(path.open("rb", buffering=0), REPORT_FILES[path.suffix], download)
 
 
@@ -240,7 +235,3 @@ def _where(text: str) -> dict[str, Any]:
     except ValidationError as error:
         problem = problem_of(error.errors(include_url=False, include_input=False)[0])
         raise ExperimentRunError(f"where: {problem}") from None
-
-
-def _json(value: Any, status: int = 200) -> Response:
-    return Response(to_json(value), status, media_type="application/json")

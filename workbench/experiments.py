@@ -24,9 +24,11 @@ from workbench.experiment_command import (
     ExperimentProgress,
     ExperimentRunError,
     TriedFacts,
+    processors,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.retention import unique_suffix
+from workbench.file_names import NAME, STAMP, unique_suffix
+from workbench.run_facts import exact_seed
 from workbench.sessions import PermissionNeededError, Sessions
 from workbench.trash import OWN, move_to_trash
 
@@ -49,8 +51,7 @@ WINDOW = 30.0
 """The time over which the rate is measured [s]."""
 KEPT = 100
 """How many results of checks are kept."""
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
-_STAMP = re.compile(r"-\d{8}-\d{6}-[0-9a-f]{4}$")
+_STAMP = re.compile(f"{STAMP}$")
 
 
 class NoSuchExperimentError(ExperimentRunError):
@@ -127,7 +128,7 @@ class Experiments:
     """
 
     def __init__(self, sessions: Sessions) -> None:
-        self.readers = sessions.readers
+        self._readers = sessions.readers
         self._models = sessions.folder
         self._recordings = sessions.recordings
         self._root = sessions.folder.root / OWN / "experiments"
@@ -156,7 +157,7 @@ class Experiments:
             NoSuchExperimentError: If there is no experiment of that name.
         """
         folder = ExperimentFolder(self._root / name)
-        if _NAME.fullmatch(name) is None or name in self._deleting or not folder.is_experiment:
+        if NAME.fullmatch(name) is None or name in self._deleting or not folder.is_experiment:
             raise NoSuchExperimentError
         return folder
 
@@ -182,7 +183,7 @@ class Experiments:
 
     def _folders(self) -> list[ExperimentFolder]:
         there = self._root.iterdir() if self._root.is_dir() else ()
-        found = [folder for path in there if _NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
+        found = [folder for path in there if NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
         return sorted(found, key=lambda folder: (folder.made, folder.path.name), reverse=True)
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
@@ -234,7 +235,7 @@ class Experiments:
         if not tables:
             return []
         try:
-            with await self.readers.make("trial counts", *tables) as made:
+            with await self._readers.make("trial counts", *tables) as made:
                 return json.loads(made.read())
         except Actr3dError as error:
             if len(tables) == 1:
@@ -246,8 +247,11 @@ class Experiments:
         return self._shown(folder.facts if run is None or run.facts is None else run.facts)
 
     def _shown(self, facts: ExperimentFacts | None) -> ExperimentFacts | None:
-        """Returns facts with the model file as pages show it."""
-        return None if facts is None else msgspec.structs.replace(facts, model=self._models.shown(facts.model))
+        """Returns facts with the model file and the seed as pages show them."""
+        if facts is None:
+            return None
+        changed = facts.changed | ({"seed": exact_seed(facts.changed["seed"])} if "seed" in facts.changed else {})
+        return msgspec.structs.replace(facts, model=self._models.shown(facts.model), seed=exact_seed(facts.seed), changed=changed)
 
     # -- checking
 
@@ -302,7 +306,7 @@ class Experiments:
             OSError: If no process can be started.
         """
         argument = design_argument(self._models, wanted.design)
-        name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{unique_suffix()}"
+        name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}{unique_suffix()}"
         arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *wanted.options()]
         await self._begin(name, arguments, wanted.workers, new=True)
         return name
@@ -350,8 +354,7 @@ class Experiments:
         facts = None if new else folder.facts
         self._starting.add(name)
         try:
-            number = [] if workers is None else [f"--workers={workers}"]
-            command = await ExperimentCommand.start([*arguments, *number], self._made_root())
+            command = await ExperimentCommand.start([*arguments, f"--workers={workers or processors()}"], self._made_root())
         finally:
             self._starting.discard(name)
         if self._closed:
@@ -531,7 +534,7 @@ class Experiments:
         if not folder.made_here:
             if not trust:
                 raise PermissionNeededError(
-                    "this workbench did not make the experiment (or it was changed since), and the code in it would be run: "
+                    "this installation did not make the experiment (or it was changed since), and the code in it would be run: "
                     'send "trust": true if you know where it comes from'
                 )
             folder.seal()

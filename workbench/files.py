@@ -252,6 +252,11 @@ def file_stamp(*paths: Path) -> tuple[int, ...]:
     return tuple(numbers)
 
 
+def database_stamp(path: Path) -> tuple[int, ...]:
+    """Returns the stamp of an SQLite file and of the log beside it, which has what is new while the file is written."""
+    return file_stamp(path, path.with_name(f"{path.name}-wal"))
+
+
 def is_writable(where: Path) -> bool:
     """Returns whether a file may be written; saving replaces the file, for which the system checks only the folder's permissions.
 

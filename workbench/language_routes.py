@@ -13,7 +13,7 @@ from actr3d.values import to_json
 from workbench.language.answers import LanguageError, Unanswered
 from workbench.language.language_server import LONGEST_TEXT, LanguageServer
 from workbench.page_commands import PageMessage
-from workbench.routes import FilePath
+from workbench.routes import FilePath, json_response
 
 router = APIRouter(prefix="/api")
 
@@ -43,4 +43,4 @@ async def language(request: Request, body: AskAboutText) -> Response:
         answer = await server.ask(body.model_dump_json().encode())
     except LanguageError as error:
         answer = to_json(asdict(Unanswered(unanswered=str(error), line=error.line))).encode()
-    return Response(answer, media_type="application/json")
+    return json_response(answer)

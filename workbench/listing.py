@@ -9,7 +9,7 @@ from pathlib import Path
 
 import msgspec
 
-from workbench.files import file_stamp
+from workbench.files import database_stamp
 from workbench.jobs import Job, doing
 from workbench.readers import READER_MEMORY
 from workbench.recording_index import Summary, unreadable
@@ -24,7 +24,7 @@ LONGEST = 10.0
 MAX_READERS = 4
 """Maximum number of workers that read summaries at the same time."""
 _Stamp = tuple[int, ...]
-"""See `file_stamp`; during a run, new data are in the -wal file beside a recording."""
+"""See `database_stamp`."""
 
 
 class Listing:
@@ -77,7 +77,7 @@ class Listing:
         return summary
 
     async def _of(self, paths: Sequence[Path]) -> list[tuple[Path, Summary]]:
-        stamps = await asyncio.to_thread(lambda: {path: file_stamp(path, path.with_name(f"{path.name}-wal")) for path in paths})
+        stamps = await asyncio.to_thread(lambda: {path: database_stamp(path) for path in paths})
         there: dict[Path, Summary] = {}
         fresh: list[Path] = []
         for path, stamp in stamps.items():

@@ -6,11 +6,8 @@ import re
 
 from actr3d.actr.declarative.activation_parts import ACTIVATION_PARTS
 
-_NUMBERED = re.compile(r"(.*?)( \d+)?", re.DOTALL)
-
 
 def part_name(part: str) -> str:
     """Returns the name of a component of an activation; of several modules of one class, each has a number."""
-    found = _NUMBERED.fullmatch(part)
-    name, number = found.groups("") if found else (part, "")
-    return ACTIVATION_PARTS.get(name, name) + number
+    name = re.sub(r" \d+\Z", "", part)
+    return ACTIVATION_PARTS.get(name, name) + part.removeprefix(name)

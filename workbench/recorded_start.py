@@ -11,6 +11,7 @@ import msgspec
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.runner.program_changes import of_user
+from workbench.run_facts import seed_of
 
 
 class RecordedStart(msgspec.Struct, frozen=True, kw_only=True):
@@ -72,7 +73,7 @@ def recorded_start_of(path: Path) -> RecordedStart:
             "made_here": recorded.made_here,
             "file": file,
             "source": facts["sources"][file],
-            "seed": facts["program_seed"] if "program_seed" in facts else facts["seed"],
+            "seed": seed_of(facts),
             "parameters": facts.get("parameters", {}),
             "helpers": facts.get("helpers", {}),
             "commands": recorded_commands if facts["kind"] == "simulation" else of_user(recorded_commands),

@@ -19,6 +19,7 @@ from workbench.live_parameters import value_changed_by
 from workbench.loader import listing_of
 from workbench.program_time import timed_events, user_commands
 from workbench.recording_index import UNREADABLE
+from workbench.run_facts import exact_seed, seed_of, source_of
 
 CONTEXT = 8
 """How many events are returned before the first difference, and after it from each recording."""
@@ -52,13 +53,13 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
             left, right = _settings_of(one.facts), _settings_of(other.facts)
             names = {Path(recorded.facts.get("file", "")).name for recorded in (one, other)}
             different = {name: [left.get(name), right.get(name)] for name in {**left, **right} if left.get(name) != right.get(name)}
-            of_one, of_other = (listing_of(_source(recorded.facts)).parameters for recorded in (one, other))
+            of_one, of_other = (listing_of(source_of(recorded.facts)).parameters for recorded in (one, other))
             agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
             return {
                 "parameters": different,
                 "changed": [_changed(one, of_one), _changed(other, of_other)],
                 "units": {**_units(other, of_other), **_units(one, of_one)},
-                "text": _changes(_source(one.facts), _source(other.facts)) if len(names) == 1 else [],
+                "text": _changes(source_of(one.facts), source_of(other.facts)) if len(names) == 1 else [],
                 "same_events": agreeing,
                 "whole": whole,
                 "difference": difference,
@@ -71,7 +72,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 
 def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
     """Returns the settings and the seed that the user chose for a run."""
-    return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed"))}
+    return {**facts.get("parameters", {}), "seed": exact_seed(seed_of(facts))}
 
 
 def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str]:
@@ -89,10 +90,6 @@ def _changed(recorded: Recorded, parameters: Sequence[Parameter]) -> dict[str, l
         if (change := value_changed_by(parameters, data)) is not None:
             found.setdefault(change[0], []).append([time, change[1]])
     return found
-
-
-def _source(facts: dict[str, Any]) -> str:
-    return facts.get("sources", {}).get(facts.get("file", ""), "")
 
 
 def _changes(left: str, right: str) -> list[str]:
@@ -120,7 +117,6 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
         if mine != its and not (mine is not None and its is not None and _alike(mine, its)):
             after = [[list(event) for event in islice(events, CONTEXT)] for events in (left, right)]
             difference = {
-                "number": number,
                 "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
                 "events": [None if event is None else list(event) for event in (mine, its)],
                 "before": [list(event) for event in before],

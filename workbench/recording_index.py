@@ -23,6 +23,7 @@ from workbench.live_parameters import value_changed_by
 from workbench.loader import listing_of
 from workbench.program_time import user_commands
 from workbench.retention import begun, copied_from, size_of, written
+from workbench.run_facts import exact_seed, seed_of, source_of
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
 UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, *_WRONG)
@@ -46,6 +47,7 @@ class Summary:
     """The model file as pages name it; see `ModelFolder.shown`."""
     kind: str = ""
     seed: Any = None
+    """A text also if it is a number that JavaScript would round."""
     parameters: dict[str, Any] = field(default_factory=dict[str, Any])
     different: tuple[str, ...] = ()
     """The parameters that differ from the defaults in the model's text."""
@@ -130,16 +132,15 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         event for text in recorded.last_events() for event in EVENTS.decode(_without_surrogates(text))
     ]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
-    file = str(facts.get("file", ""))
-    source = facts.get("sources", {}).get(file, "")
+    source = source_of(facts)
     named = str(facts.get(NAMED, path.stem))
     copied = copied_from(named)
     return Summary(
         id=path.stem,
         named=named,
-        model=models.shown(file),
+        model=models.shown(str(facts.get("file", ""))),
         kind=str(facts["kind"]),
-        seed=facts.get("program_seed", facts.get("seed")),
+        seed=exact_seed(seed_of(facts)),
         parameters=parameters,
         different=_different(parameters, source),
         changed=_changed(recorded, source),

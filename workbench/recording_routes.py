@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping, Sequence
-from io import FileIO
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -15,9 +14,9 @@ from pydantic import Field
 from starlette.requests import ClientDisconnect
 
 from actr3d.errors import RecordingError
-from actr3d.values import escape_surrogates, to_json
+from actr3d.values import to_json
 from workbench.auth import BODY_TIME, LARGEST_UPLOAD, UPLOAD_TYPE, too_large
-from workbench.disconnects import DisconnectedError, while_connected
+from workbench.disconnects import DisconnectedError
 from workbench.labels import Label
 from workbench.listing import MAX_LISTED
 from workbench.open_file import OpenFile
@@ -25,7 +24,7 @@ from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
 from workbench.recordings import Recordings
 from workbench.retention import erase, is_complete
-from workbench.routes import Id, sessions_of
+from workbench.routes import Id, code_json, json_response, made, sessions_of
 from workbench.sessions import SessionError, Sessions
 
 router = APIRouter(prefix="/api")
@@ -106,7 +105,7 @@ async def recordings(
     listed = await asyncio.to_thread(_listed, sessions.recordings, found, writing)
     problem = await asyncio.to_thread(lambda: sessions.recordings.labels.problem)
     page = {"total": total, "recordings": listed, "warning": problem}
-    return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
+    return json_response(await asyncio.to_thread(to_json, page))
 
 
 @router.post(
@@ -133,7 +132,7 @@ async def import_recording(request: Request, name: Annotated[str, Query(min_leng
         raise RecordingError(f"the file cannot be read: {summary.problem}")
     await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
     sessions.announce_recordings()
-    return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")
+    return json_response(to_json(await _recording(sessions, path.stem)), 201)
 
 
 async def _receive(request: Request, to: Path) -> None:
@@ -164,7 +163,7 @@ async def _receive(request: Request, to: Path) -> None:
 @router.get("/recordings/{recording}")
 async def recording(request: Request, recording: Id) -> Response:
     """Returns the summary of a recording."""
-    return Response(to_json(await _recording(sessions_of(request), recording)), media_type="application/json")
+    return json_response(to_json(await _recording(sessions_of(request), recording)))
 
 
 @router.get("/recordings/{recording}/file")
@@ -179,13 +178,8 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
         file = sessions.recordings.opened(recording)
     else:
         options = {"models": str(sessions.folder.root)} if form == "replay.html" else {}
-        file = await _made(request, form, path, **options)
+        file = await made(request, form, path, **options)
     return OpenFile(file, KINDS[form], f"{recording}.{form}")
-
-
-async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
-    """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_connected(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
 
 
 @router.get("/recordings/{recording}/curves")
@@ -202,7 +196,7 @@ async def recorded_curves(
     They are returned as the question `curves` of a session returns them; see `workbench.page_commands.bodies.Curves`.
     """
     path = sessions_of(request).recordings.path(recording)
-    return OpenFile(await _made(request, "curves", path, names=name, first=first, most=most, last=last), "application/json")
+    return OpenFile(await made(request, "curves", path, names=name, first=first, most=most, last=last), "application/json")
 
 
 @router.post("/recordings/{recording}/open", status_code=201)
@@ -224,19 +218,15 @@ async def recorded_code(request: Request, recording: Id) -> dict[str, Any]:
     `made_here` says whether this installation made the recording and nobody has changed it since.
     """
     start = await sessions_of(request).recorded_start(recording)
-    helpers = {escape_surrogates(name): escape_surrogates(text) for name, (_, text) in start.helpers.items()}
-    return {
-        "made_here": start.made_here,
-        "file": escape_surrogates(start.file),
-        "source": escape_surrogates(start.source),
-        "helpers": helpers,
-    }
+    return code_json(start.made_here, start.file, start.source, {name: text for name, (_, text) in start.helpers.items()})
 
 
 @router.post("/recordings/{recording}/replay")
 async def replay(request: Request, recording: Id, body: Trusting | None = None) -> dict[str, Any]:
-    """Runs a recording again in a process of its own and reports whether all bytes agree; it is cancelled when the clients disconnect.
+    """Runs a recording again in a process of its own and compares all bytes; it is cancelled when the clients disconnect.
 
+    `verdict` is "agrees", "agrees up to its end" (that of a recording which does not go to the end of its run), "differs", or null if it is
+    unknown; `text` says what was compared, where it differs, or why the verdict is unknown.
     403 if this installation did not make the recording, unless `trust` is true.
     """
     sessions = sessions_of(request)
@@ -283,10 +273,10 @@ async def compare_recordings(request: Request, body: Pair) -> Response:
     sessions = sessions_of(request)
     names = (body.first, body.second)
     first, second = [sessions.recordings.path(name) for name in names]
-    with await _made(request, "comparison", first, second, kinds=body.kinds) as file:
+    with await made(request, "comparison", first, second, kinds=body.kinds) as file:
         differences = msgspec.json.decode(await asyncio.to_thread(file.read), type=dict[str, msgspec.Raw])
     runs = to_json([await _recording(sessions, name) for name in names]).encode()
-    return Response(msgspec.json.encode({"runs": msgspec.Raw(runs), **differences}), media_type="application/json")
+    return json_response(msgspec.json.encode({"runs": msgspec.Raw(runs), **differences}))
 
 
 async def _recording(sessions: Sessions, name: str) -> dict[str, Any]:

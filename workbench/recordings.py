@@ -14,13 +14,13 @@ from pathlib import Path
 
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.branch_numbers import BranchNumbers
+from workbench.file_names import NAME, unique_suffix
 from workbench.labels import Labels
-from workbench.retention import RetentionLimits, begun, companions, erase, is_open_elsewhere, recordings_over_limit, unique_suffix, written
+from workbench.retention import RetentionLimits, begun, companions, erase, is_open_elsewhere, recordings_over_limit, written
 from workbench.trash import OWN, move_to_trash, names_in_trash
 
 LEFTOVER = 86_400.0
 """The age from which an unfinished file is that of a process that was killed [s]."""
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 
 
 class NoSuchRecordingError(Actr3dError):
@@ -63,7 +63,7 @@ class Recordings:
         if problem is not None:
             raise RecordingError(f"the folder '{self._folder}' cannot be written: {problem}")
         stem = re.sub(r"[^A-Za-z0-9_]", "_", model)[:60] or "model"
-        return self._folder / f"{stem}-{unique_suffix()}.sqlite"
+        return self._folder / f"{stem}{unique_suffix()}.sqlite"
 
     def path(self, name: str) -> Path:
         """Returns the path of a recording.
@@ -72,7 +72,7 @@ class Recordings:
             NoSuchRecordingError: If there is no recording of that name.
         """
         path = self._folder / f"{name}.sqlite"
-        if _NAME.fullmatch(name) is None or not path.is_file() or path.is_symlink():
+        if NAME.fullmatch(name) is None or not path.is_file() or path.is_symlink():
             raise NoSuchRecordingError
         return path
 
@@ -83,7 +83,7 @@ class Recordings:
     def _files(self) -> Sequence[Path]:
         spare = self.spare()
         files = [path for path in self._folder.glob("*.sqlite") if path not in spare]
-        return [path for path in files if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
+        return [path for path in files if NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
 
     def _names(self) -> set[str]:
         """Returns the names of all recordings, including those in the trash."""

@@ -38,7 +38,10 @@ class Replays:
         return max((job.share for other, job in self._running if other == path), default=None)
 
     async def run(self, path: Path, is_disconnected: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
-        """Returns whether every byte agrees (None if that is unknown), and the text of the comparison.
+        """Returns the `verdict` and a `text`: what was compared, where it differs, or why there is no verdict.
+
+        The verdict is "agrees" if every byte agrees; "agrees up to its end" if every byte of a recording agrees that does not go to the end
+        of its run; "differs"; or None if it is unknown.
 
         Args:
             path: The recording.
@@ -64,7 +67,7 @@ async def _outcome(job: Job, is_disconnected: Callable[[], Awaitable[bool]]) -> 
     try:
         async for _ in job.stages(lambda: job.share):
             if not job.over.is_set() and await is_disconnected():
-                return {"agrees": None, "text": "cancelled"}
+                return {"verdict": None, "text": "cancelled"}
     except StuckError as error:
-        return {"agrees": None, "text": str(error)}
-    return {"agrees": None, "text": f"no verdict: {job.problem}"} if job.result is None else msgspec.json.decode(job.result)
+        return {"verdict": None, "text": str(error)}
+    return {"verdict": None, "text": f"no verdict: {job.problem}"} if job.result is None else msgspec.json.decode(job.result)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import fcntl
 import re
-import secrets
 import time
 from collections.abc import Collection, Sequence
 from contextlib import suppress
@@ -12,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from actr3d.recording.opening import COMPANIONS
+from workbench.file_names import STAMP, unique_suffix
 from workbench.labels import Labels
 
 MAX_RECORDINGS = 500
@@ -19,14 +19,14 @@ MAX_RECORDINGS = 500
 MAX_MEGABYTES = 4_000
 """Default maximum size of all recordings [MB]."""
 MAX_BRANCHES = 20
-"""How many of the newest branches of one run are kept; a branch that a user has renamed does not count."""
-_BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
-_UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
+"""How many of the newest branches of one run are kept; branches with a label do not count."""
+_BEGUN = re.compile(STAMP)
+_UNNAMED = re.compile(f".*{STAMP}")
 """The form of the name that a run gives its recording; any other name was given by a user."""
 _SQLITE_LOCK = 510, 0x40000002
 """The bytes of a file, their number and the first, that a process locks while it has the file open with SQLite and a write-ahead log.
 Source: https://www.sqlite.org/src/file/src/os.h (SHARED_SIZE, SHARED_FIRST)."""
-_BRANCH = re.compile(r"(.+)-at-(\d+\.\d+)s-\d{8}-\d{6}-[0-9a-f]{4}")
+_BRANCH = re.compile(rf"(.+)-at-(\d+\.\d+)s{STAMP}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,11 +64,6 @@ def recordings_over_limit(files: Sequence[Path], limits: RetentionLimits, labell
             number -= 1
             size -= own
     return found
-
-
-def unique_suffix() -> str:
-    """Returns the end of a new recording's name: the current time and a random number, as several may begin in one second."""
-    return f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}"
 
 
 def written(path: Path) -> float:
@@ -147,7 +142,7 @@ def new_branch(recording: Path, moment: float) -> Path:
         recording: The recording of the run.
         moment: The time at which the past was changed [s].
     """
-    return recording.with_name(f"{recording.stem}-at-{moment:.3f}s-{unique_suffix()}{recording.suffix}")
+    return recording.with_name(f"{recording.stem}-at-{moment:.3f}s{unique_suffix()}{recording.suffix}")
 
 
 def copied_from(name: str) -> tuple[str, float] | None:

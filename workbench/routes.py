@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from dataclasses import asdict
+from io import FileIO
+from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
@@ -12,9 +15,10 @@ from fastapi import Path as InPath
 from fastapi.responses import Response
 from pydantic import Field
 
-from actr3d.values import escape_surrogates
+from actr3d.values import escape_surrogates, to_json
 from workbench.about import about_of
 from workbench.built_manual import manual, manual_page, no_manual
+from workbench.disconnects import while_connected
 from workbench.files import ModelFile
 from workbench.loader import ModelListing, Problem, listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
@@ -91,6 +95,22 @@ class CommandRequest(PageMessage):
 def sessions_of(request: Request) -> Sessions:
     """Returns the sessions of the server that handles the request."""
     return request.app.state.sessions
+
+
+def json_response(content: str | bytes, status: int = 200) -> Response:
+    """Returns a response whose content is JSON already."""
+    return Response(content, status, media_type="application/json")
+
+
+async def made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
+    """Returns an open file that a worker makes from recordings or tables; the work is cancelled if the client disconnects."""
+    return await while_connected(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
+
+
+def code_json(made_here: bool, file: str, source: str, helpers: Mapping[str, str]) -> dict[str, Any]:
+    """Returns code that a request would run, as values that JSON can encode whatever the texts contain."""
+    texts = {escape_surrogates(name): escape_surrogates(text) for name, text in helpers.items()}
+    return {"made_here": made_here, "file": escape_surrogates(file), "source": escape_surrogates(source), "helpers": texts}
 
 
 # -- models
@@ -216,7 +236,7 @@ async def session(request: Request, session: Id) -> Response:
     """Returns the facts of a session and the newest state of its run."""
     found = sessions_of(request).get(session)
     found_json = {"session": msgspec.Raw(found.facts_json()), "state": msgspec.Raw(found.state_json())}
-    return Response(msgspec.json.encode(found_json), media_type="application/json")
+    return json_response(msgspec.json.encode(found_json))
 
 
 @router.get("/sessions/{session}/about")
@@ -241,12 +261,10 @@ async def command(request: Request, session: Id, body: CommandRequest) -> Respon
     work = asyncio.create_task(body.command.submit(sessions_of(request).get(session), "API"))
     done, _ = await asyncio.wait([work], timeout=ANSWER_TIME)
     if not done:
-        return Response(
-            msgspec.json.encode({"result": None, "error": "not done yet: the model is busy"}), 202, media_type="application/json"
-        )
+        return json_response(to_json({"result": None, "error": "not done yet: the model is busy"}), 202)
     reply = work.result()
     found_json = msgspec.json.encode({"result": msgspec.Raw(reply.result), "error": reply.error})
-    return Response(found_json, 200 if reply.error is None else 409, media_type="application/json")
+    return json_response(found_json, 200 if reply.error is None else 409)
 
 
 @router.post("/sessions/{session}/close")

@@ -68,16 +68,19 @@ class SceneFraming:
         """Returns the position of the body."""
         return np.array(data.xpos[self.body])
 
+    def corners_within(self, most: int) -> Any:
+        """Returns the corners of all objects on the stage, or those of their common bounding box if there are more than this number."""
+        around = itertools.product(*zip(self.low, self.high, strict=True))
+        return self.corners if len(self.corners) <= most else np.array(list(around))
+
     def data(self, grounds: list[str]) -> dict[str, Any]:
         """Returns the data with which browsers place their cameras.
 
         Args:
             grounds: The names of the ground planes in viser's tree.
         """
-        around = itertools.product(*zip(self.low, self.high, strict=True))
-        corners = self.corners if len(self.corners) <= MAX_CORNERS else np.array(list(around))
         numbers = {
-            "corners": corners,
+            "corners": self.corners_within(MAX_CORNERS),
             "low": self.low,
             "high": self.high,
             "ahead": self.ahead,

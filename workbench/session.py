@@ -14,11 +14,12 @@ import msgspec
 
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.client_feed import MAX_NOTICES, Broadcast, Feed, Raw
-from workbench.event_log import EventLog
+from workbench.event_log import LatestEvents
 from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.recordings import Recordings
+from workbench.run_facts import exact_seed
 from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, is_there, start_of
 from workbench.worker.messages import (
     ENDED,
@@ -207,12 +208,12 @@ class Session(Broadcast, Receiver):
             self._waiting.take(message)
             return
         launched = self._run_of(worker)
-        if isinstance(message, Facts) and launched is not None and launched is self._loading:
+        if launched is None:
+            return
+        if isinstance(message, Facts) and launched is self._loading:
             self._swap(launched, message)
         shown = launched is self._shown
         match message:
-            case _ if launched is None:
-                return
             case Facts() if shown and message is not self.facts:
                 self.facts = message
                 self._notify_watchers(message)
@@ -282,7 +283,7 @@ class Session(Broadcast, Receiver):
             self._recordings.discard(useless)
         self.run += 1
         self.epoch += 1
-        self.log = EventLog()
+        self.log = LatestEvents()
         self.facts, self.state, self.branched, launched.stuck = facts, None, None, None
         self._cuts.clear()
         self._given.clear()
@@ -314,7 +315,8 @@ class Session(Broadcast, Receiver):
             if self.state is not None and self.state.status not in ENDED:
                 status_now = "failed" if self._ending != "stopped" else "ended"
                 reason = self._ending or self._after_end
-                self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None, target=None)
+                ended = {"status": status_now, "reason": reason, "breakpoint": None, "measured": None, "target": None}
+                self.state = msgspec.structs.replace(self.state, **ended)
                 self.state_version += 1
         self.changed(facts=True)
 
@@ -366,8 +368,8 @@ class Session(Broadcast, Receiver):
 
         self.run_task(end())
 
-    async def leave_way(self, command: object) -> bool:
-        """Sends a command to a run that is on its way to another time; returns whether it was, and has answered soon."""
+    async def cancel_seek(self, command: object) -> bool:
+        """Sends a command to a run whose seek is in progress; returns whether one was, and the run has answered soon."""
         if self.is_loading or self.state is None or self.state.target is None:
             return False
         with suppress(TimeoutError):
@@ -438,7 +440,7 @@ class Session(Broadcast, Receiver):
         self.changed(facts=True)
 
     def take_choices(self, other: Session) -> None:
-        """Takes over what users have chosen in another session: overlays and speed, and the breakpoints if it has the same model file."""
+        """Applies what users have chosen in another session: overlays and speed, and the breakpoints if it has the same model file."""
         self.look = other.look
         self._notify_watchers(self.look)
         if other.speed_chosen:
@@ -563,7 +565,7 @@ class Session(Broadcast, Receiver):
             "speed": self.speed,
             "real_time": self.real_time,
             "settings": start.settings if start is not None else {},
-            "seed": None if facts is None else _exactly(facts.seed),
+            "seed": None if facts is None else exact_seed(facts.seed),
             "stale": self._shown is not None and self._shown.is_stale(digest),
             "gone": not is_there(self.path),
             "digest": digest,
@@ -625,7 +627,7 @@ class Session(Broadcast, Receiver):
             return b"null"
         values = {
             name: getattr(state, name)
-            for name in ("status", "reason", "tick", "time", "furthest", "target", "wanted", "measured", "events")
+            for name in ("status", "reason", "breakpoint", "tick", "time", "furthest", "target", "wanted", "measured", "events")
         }
         return msgspec.json.encode(
             {
@@ -688,12 +690,7 @@ class Session(Broadcast, Receiver):
             watcher(what)
 
 
-def _exactly(seed: int | str) -> int | str:
-    """Returns a seed in a form that a page can read without loss: as text if it exceeds JavaScript's exact integers."""
-    return seed if isinstance(seed, int) and abs(seed) < 2**53 else str(seed)
-
-
-def never_begun(state: State | None, log: EventLog) -> bool:
+def never_begun(state: State | None, log: LatestEvents) -> bool:
     """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
 
     Args:

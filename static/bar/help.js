@@ -7,9 +7,9 @@ import { dialog } from "../parts/dialog.js";
 
 function showHelp() {
   const groups = KEY_GROUPS.filter((group) => keysOf(group).length > 0).map(
-    (group) => html`<section key=${group}>
-      <h3 id="keys-${group}">${group}</h3>
-      <table aria-labelledby="keys-${group}"><tbody>${keysOf(group).map(({ key, text }) => html`<tr key=${text}><td><kbd>${keyText(key)}</kbd></td><td>${text}</td></tr>`)}</tbody></table>
+    (group, n) => html`<section key=${group}>
+      <h3 id="keys-${n}">${group}</h3>
+      <table aria-labelledby="keys-${n}"><tbody>${keysOf(group).map(({ key, text }) => html`<tr key=${text}><td><kbd>${keyText(key)}</kbd></td><td>${text}</td></tr>`)}</tbody></table>
     </section>`,
   );
   const manual = html`<p><a href="/manual/" target="_blank" rel="noopener">Manual of ACT-R 3D</a> (<a href="/manual/workbench/" target="_blank" rel="noopener">the workbench</a>)</p>`;

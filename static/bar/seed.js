@@ -2,7 +2,7 @@
 
 import { html, useSignal } from "../vendor/preact.js";
 import { sendCommand } from "../server.js";
-import { session } from "../store.js";
+import { session, shownRun } from "../store.js";
 
 const MAX_SEED = 2n ** 63n - 1n;
 
@@ -15,9 +15,9 @@ export function seedProblem(text) {
 
 export function SeedField() {
   const draft = useSignal(null); // the text being typed: {of, text}
-  const { id, run, seed } = session.value ?? {};
+  const { seed } = session.value ?? {};
   const known = seed === null || seed === undefined ? "" : String(seed);
-  const of = `${id} ${run}`;
+  const of = shownRun.value;
   const mine = draft.value?.of === of ? draft.value : null; // ignores a text typed for another run
   const text = mine?.text ?? known;
   const problem = mine?.submitted ? seedProblem(text) : null;

@@ -3,7 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { Branch } from "./branch.js";
-import { Former } from "../editor/stale_run.js";
+import { StaleRunNote } from "../editor/stale_run.js";
 import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
@@ -26,7 +26,7 @@ export function StatusLine() {
   return html`<footer class="status-line">
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
     <span class="if-room hint"><${Hint} /></span>
-    <${Branch} />${embedded === null ? html`<${Former} />` : null}
+    <${Branch} />${embedded === null ? html`<${StaleRunNote} />` : null}
     <span class="if-room facts">
       ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
       <span>${counted(state.value?.events ?? 0, "event")}</span>

@@ -13,7 +13,7 @@ import { isOver, isRestarting, runStatus } from "../run_status.js";
 import { alive, notify, running, session, state } from "../store.js";
 import { sendCommandThere } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
-import { bindFaster, speedIsKnown } from "./pace.js";
+import { speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
 import { runUntil } from "./until.js";
 
@@ -107,8 +107,6 @@ function setSpeed(number) {
 function changeSpeed(by) {
   setSpeed(speedNumber() + by);
 }
-
-bindFaster(() => run(faster));
 
 export function Transport() {
   const goes = running.value && !isRestarting.value;

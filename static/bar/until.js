@@ -17,7 +17,7 @@ const production = signal("");
 const buffer = signal("");
 const pattern = signal("");
 const body = signal("");
-/** Why it cannot run until then; null if it can. */
+/** Why it cannot run until then, {field, text}: the field that is wrong, null for none; null if it can. */
 const problem = signal(null);
 
 function partsThat(holds) {
@@ -29,12 +29,18 @@ function productionNames() {
   return [...new Set(partsThat((part) => part.is === "system").flatMap(([, part]) => part.productions))].sort();
 }
 
-/** Returns the problem with an entry, such as an invalid time or a missing name; an empty text if it can be sent. */
+/** Returns the problem with an entry, such as an invalid time or a missing name; null if it can be sent. */
 function missing() {
   const wanted = timeOfText(time.value);
-  if (kind.value === "time" && !(wanted >= 0 && wanted < 1e9)) return `enter a time, such as ${TIMES}`;
-  if (kind.value === "production" && !production.value) return "enter the name of a production";
-  return kind.value === "buffer" && !buffer.value ? "enter the name of a buffer" : "";
+  if (kind.value === "time" && !(wanted >= 0 && wanted < 1e9)) return { field: "time", text: `enter a time, such as ${TIMES}` };
+  if (kind.value === "production" && !production.value) return { field: "production", text: "enter the name of a production" };
+  return kind.value === "buffer" && !buffer.value ? { field: "buffer", text: "enter the name of a buffer" } : null;
+}
+
+/** Returns the problem that an error of the server states: the message begins with the field, unless it is about none. */
+function problemOf({ message }) {
+  const [, field = null, text = message] = /^(time|production|buffer|pattern|contact): (.*)$/s.exec(message) ?? [];
+  return { field, text };
 }
 
 commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
@@ -77,20 +83,16 @@ function Line({ id, text, children }) {
   return html`<div class="until ${kind.value === id ? "on" : ""}">
     <label><input type="radio" name="until" checked=${kind.value === id} onChange=${choose} /> ${text}</label>
     <span onInput=${choose}>${children}</span>
-    ${problem.value && kind.value === id ? html`<p class="bad" role="alert">${problem}</p>` : null}
+    ${problem.value && kind.value === id ? html`<p class="bad" role="alert">${problem.value.text}</p>` : null}
   </div>`;
 }
 
-/** Whether the problem concerns this field: the name or the pattern of a buffer. */
-function isWrong(of) {
-  if (!problem.value || { time, production, contact: body }[kind.value] === of) return Boolean(problem.value);
-  return kind.value === "buffer" && of === (/\bbuffers? |name of a buffer/.test(problem.value) ? buffer : pattern);
-}
+const isWrong = (field) => problem.value?.field === field;
 
 /** A name that can also be typed: before a program has started, no names are known. */
-function Name({ of, among, label, otherwise, first }) {
+function Name({ of, field, among, label, otherwise, first }) {
   const id = useId();
-  return html`<input aria-label=${label} data-first=${first} list=${id} class="mono" spellcheck=${false} aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
+  return html`<input aria-label=${label} data-first=${first} list=${id} class="mono" spellcheck=${false} aria-invalid=${isWrong(field)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
     <datalist id=${id}>${among.map((name) => html`<option key=${name} value=${name} />`)}</datalist>`;
 }
 
@@ -99,14 +101,14 @@ function Body() {
   const stops = breakpoints.value;
   return html`
     <${Line} id="time" text=${texts.time}>
-      <input aria-label="Time [s]" aria-invalid=${isWrong(time)} data-first=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
+      <input aria-label="Time [s]" aria-invalid=${isWrong("time")} data-first=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
-    <${Line} id="production" text=${texts.production}><${Name} of=${production} among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
+    <${Line} id="production" text=${texts.production}><${Name} of=${production} field="production" among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
     <${Line} id="buffer" text=${texts.buffer}>
-      <${Name} of=${buffer} among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
-      <input aria-label="Pattern" aria-invalid=${isWrong(pattern)} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
+      <${Name} of=${buffer} field="buffer" among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
+      <input aria-label="Pattern" aria-invalid=${isWrong("pattern")} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
     <//>
-    ${bodies().length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} among=${bodies()} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
+    ${bodies().length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} field="contact" among=${bodies()} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>
     ${stops.length
       ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span>${isLost(name) ? html`<span class="quiet">not in this run</span>` : null}<button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`
@@ -121,12 +123,12 @@ export async function runUntil() {
   if (kind.value === "contact" && !bodies().length) kind.value = "time";
   let closed = false;
   async function check() {
-    problem.value = missing() || null;
+    problem.value = missing();
     if (problem.value) return false;
     try {
       await requestThere(wanted());
     } catch (error) {
-      if (!isLeft(error) && !closed) problem.value = error.message;
+      if (!isLeft(error) && !closed) problem.value = problemOf(error);
       return isLeft(error);
     }
     return true;

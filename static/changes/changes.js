@@ -7,12 +7,13 @@ import { literal } from "../parameters/values.js";
 import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
+import { Menu } from "../parts/menu.js";
 import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
 import { isOver, runStatus } from "../run_status.js";
 import { request } from "../server.js";
 import { alive, notify, session, state } from "../store.js";
-import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
+import { computed, html, signal, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
 export const changes = computed(() => session.value?.changes ?? []);
@@ -177,25 +178,18 @@ export function ChangeButtons({ of, given, without = [] }) {
 
 /** A menu with the same changes, opened by a small button: for lists with little room. */
 export function ChangeMenu({ of, given, label }) {
-  const id = useId();
-  const box = useRef(null);
   const { problem, send, forget } = useChange();
   const list = changesOf(of);
   if (list.length === 0) return null;
-  const place = ({ currentTarget }) => {
-    const { left, bottom } = currentTarget.getBoundingClientRect();
-    Object.assign(box.current.style, { left: `${left}px`, top: `${bottom}px` });
-    forget();
-  };
-  const act = async (one) => {
+  const act = async (one, toggle) => {
     const more = needsMore(one, given);
     const done = more || (await send(one.word, given));
-    box.current?.togglePopover(!done); // a dialog that has asked has closed the menu, which shows the problem
+    toggle(!done); // a dialog that has asked has closed the menu, which shows the problem
     if (more) askAndMake(one, given);
   };
-  return html`<${Button} class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title=${noChange.value || `Change ${label}`} disabled=${Boolean(noChange.value)} onClick=${place}><${Icon} name="more" /><//>
-    <div id=${id} ref=${box} popover="auto" class="change-menu" role="group" aria-label="Change ${label}">
-      ${list.map((one) => html`<button key=${one.word} title=${plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
-      <${Problem} text=${problem} />
-    </div>`;
+  const name = `Change ${label}`;
+  return html`<${Menu} class="change-menu" label=${name} title=${noChange.value || name} face=${html`<${Icon} name="more" />`} disabled=${Boolean(noChange.value)} onClick=${forget}>
+    ${(toggle) => html`${list.map((one) => html`<button key=${one.word} title=${plain(one.help)} onClick=${() => act(one, toggle)}>${one.title}</button>`)}
+      <${Problem} text=${problem} />`}
+  <//>`;
 }

@@ -1,10 +1,9 @@
 // Undoes the last change by hand: the run goes back to its moment, and forgets it and what came after it.
 
-import { change } from "../bar/branch.js";
+import { sendChange } from "../bar/branch.js";
 import { command } from "../commands.js";
-import { isLeft } from "../server.js";
 import { runStatus } from "../run_status.js";
-import { alive, events, notify } from "../store.js";
+import { alive, events } from "../store.js";
 import { commandText, isOfUser } from "../timeline/commands.js";
 import { present } from "../timeline/seek.js";
 import { changes } from "./changes.js";
@@ -20,20 +19,12 @@ function canUndo() {
   return alive.value && changes.value.length > 0 && (latest() !== undefined || events.value.missing > 0);
 }
 
-async function undo() {
-  try {
-    await change({ type: "undo" });
-  } catch (error) {
-    if (!isLeft(error)) notify(error.message);
-  }
-}
-
 command({
   text: "Undo the last change by hand",
   about: () => (canUndo() && latest() ? commandText(latest()).join(" ") : ""),
   key: "Mod+z",
   group: "Run",
-  work: undo,
+  work: () => sendChange({ type: "undo" }),
   ready: canUndo,
   why: () => (alive.value ? "Nothing was changed by hand up to now." : runStatus.value.text),
 });

@@ -1,6 +1,7 @@
 // Compares two recordings side by side on the whole page: their settings, results, first difference between traces, and curves.
 
 import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
+import { buttonTitle } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { call } from "../server.js";
 import { shownRecording } from "../store.js";
@@ -70,8 +71,8 @@ function Dialog() {
     <div class="compare-head">
       <h2 id="compare-title">Two runs</h2>
       ${found.answer ? html`<${Head} runs=${found.answer.runs} />` : html`<span class="stretch"></span>`}
-      <button class="bare" title="Change sides" onClick=${() => (pair.value = pair.value.toReversed())}>Change sides</button>
-      <button class="bare" aria-label="Close" title="Close (Esc)" onClick=${() => box.current.close()}><${Icon} name="close" /></button>
+      <button class="bare" title="Swap sides" onClick=${() => (pair.value = pair.value.toReversed())}>Swap sides</button>
+      <button class="bare" aria-label="Close" title=${buttonTitle({ key: "Escape" }, "Close")} onClick=${() => box.current.close()}><${Icon} name="close" /></button>
     </div>
     <${Contents} ...${found} kinds=${kinds} />
   </dialog>`;

@@ -2,7 +2,8 @@
 
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Plot } from "../parts/plot.js";
-import { call } from "../server.js";
+import { toggled } from "../parts/toggled.js";
+import { call, recordingPath } from "../server.js";
 import { beginningText, nameOf } from "../runs/wording.js";
 
 /** The colours of the two runs, in plots and headings. */
@@ -18,14 +19,14 @@ function query(names) {
 }
 
 async function read(run, names) {
-  return call("GET", `/api/recordings/${run.id}/curves?most=${MAX_MOMENTS}&${query(names)}`);
+  return call("GET", `${recordingPath(run.id)}/curves?most=${MAX_MOMENTS}&${query(names)}`);
 }
 
 /** Returns the joint that moves most; undefined if there is none. */
 async function moving(run, known) {
   const joints = known.filter(({ group }) => group === "joint").map(({ name }) => name);
   if (joints.length === 0) return undefined;
-  const samples = await call("GET", `/api/recordings/${run.id}/curves?most=100&${query(joints.slice(0, 100))}`);
+  const samples = await call("GET", `${recordingPath(run.id)}/curves?most=100&${query(joints.slice(0, 100))}`);
   const reach = (name) => Math.max(...samples.curves[name]) - Math.min(...samples.curves[name]);
   return joints.filter((name) => name in samples.curves).sort((one, other) => reach(other) - reach(one))[0];
 }
@@ -48,7 +49,7 @@ function useCurves(runs) {
     let over = false;
     known.value = null;
     async function begin() {
-      const both = await Promise.all(runs.map((run) => call("GET", `/api/recordings/${run.id}/curves?most=2&name=-`)));
+      const both = await Promise.all(runs.map((run) => call("GET", `${recordingPath(run.id)}/curves?most=2&name=-`)));
       const all = new Map(both.flatMap(({ names }) => names).map((curve) => [curve.name, curve]));
       const names = [...all.values()];
       const shown = names.length > 0 ? await first(runs, names) : [];
@@ -77,7 +78,7 @@ function useCurves(runs) {
 
 function Choice({ known, chosen }) {
   const groups = [...Map.groupBy(known, ({ group, of }) => of ?? group)];
-  const toggle = (name) => (chosen.value = chosen.value.includes(name) ? chosen.value.filter((each) => each !== name) : [...chosen.value, name]);
+  const toggle = (name) => (chosen.value = toggled(chosen.value, name));
   const add = (event) => {
     const name = event.currentTarget.value;
     event.currentTarget.value = "";

@@ -12,7 +12,7 @@ async function leave({ path }) {
 }
 
 /** @param document The text that is shown. @param compare Shows both texts if the file has another one. */
-export function Strip({ document, compare }) {
+export function FileBanner({ document, compare }) {
   const theirs = document.theirs.value;
   const run = former.value;
   if (theirs?.text === null) {

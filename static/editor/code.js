@@ -35,14 +35,14 @@ import { codeTheme } from "./code_theme.js";
 import { isMac } from "../keys.js";
 import { marking } from "./marks.js";
 import { assist, warm } from "./assist.js";
-import { read } from "./language.js";
+import { shownText } from "./language.js";
 
 /** The actions of the editor's own keys; panels/editor.js fills it in. */
 export const keys = { run: () => {}, save: () => {}, define: () => {}, rename: () => {}, format: () => {} };
 
 let view = null;
 let inView = null;
-read.path = () => inView?.path ?? null;
+shownText.path = () => inView?.path ?? null;
 
 const language = python();
 const own = Prec.highest(

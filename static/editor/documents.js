@@ -42,7 +42,7 @@ class Document {
     /** A position to scroll to when the text becomes visible; null for none. */
     this.revealed = null;
     this.saving = signal(false);
-    /** Whether the latest save has finished. */
+    /** The latest save: a promise of whether the file was written. */
     this.saved = Promise.resolve(true);
     this.dirty = signal(base === null);
     /** The file's text if this text was not edited from it: {text, version}; {text: null} if the file no longer exists. */

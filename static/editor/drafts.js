@@ -55,7 +55,8 @@ function refresh() {
   drafted.value = all().filter(({ key, draft }) => key === keyOf(draft.path)).map(({ draft }) => draft.path);
 }
 
-/** Returns the draft of a file: {path, text, base (the text it was edited from), version}; null if there is none. */
+/** Returns the draft of a file: {path, text, version, at}, with the version of the file that it was edited from, and when it was stored [ms since
+ * 1970]; null if there is none. */
 export function read(path) {
   try {
     return JSON.parse(localStorage.getItem(keyOf(path)));

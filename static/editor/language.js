@@ -6,7 +6,7 @@ import { call } from "../server.js";
 const LONGEST_READ = 200_000;
 
 /** Returns the path of the text in a view; code.js fills it in. */
-export const read = { path: () => null };
+export const shownText = { path: () => null };
 
 let asking = Promise.resolve();
 const newest = new Map();
@@ -16,7 +16,7 @@ const newest = new Map();
  * the others get null. Rejects if the server has no answer: with an Error, whose `line` is that of the text that is the reason, if
  * there is one. */
 export function askAbout(state, ask, at = 0, name = "") {
-  const path = read.path();
+  const path = shownText.path();
   if (path === null) return Promise.resolve(null);
   if (state.doc.length > LONGEST_READ) return Promise.reject(new Error(`The text is longer than ${LONGEST_READ.toLocaleString("en")} characters: it is not read for help.`));
   const turn = {};

@@ -1,10 +1,10 @@
 // The menu of the editor: what its keys do, and pieces of models to insert.
 
 import { gotoLine, openSearchPanel, startCompletion } from "../vendor/codemirror.js";
-import { html, useId, useRef } from "../vendor/preact.js";
+import { html } from "../vendor/preact.js";
 import { keyText } from "../keys.js";
-import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
+import { Menu } from "../parts/menu.js";
 import { showHelp } from "./assist.js";
 import { keys, withView } from "./code.js";
 import { insertAtCursor, SNIPPETS } from "./snippets.js";
@@ -24,26 +24,11 @@ export const ACTIONS = [
 export const INSERTIONS = SNIPPETS.map((piece) => ({ text: piece.detail, work: () => withView((view) => insertAtCursor(view, piece)) }));
 
 /** @param disabled Whether there is no text. */
-export function Menu({ disabled }) {
-  const id = useId();
-  const button = useRef(null);
-  const menu = useRef(null);
-
-  function place(event) {
-    if (event.newState !== "open") return;
-    const { right, bottom } = button.current.getBoundingClientRect();
-    Object.assign(menu.current.style, { left: "auto", right: `${innerWidth - right}px`, top: `${bottom + 2}px` });
-  }
-
-  function choose(work) {
-    menu.current.hidePopover();
-    work();
-  }
-
-  return html`<${Button} button=${button} class="bare" popovertarget=${id} disabled=${disabled} title="More: definition, rename, format, insert" aria-label="More"><${Icon} name="more" /><//>
-    <div ref=${menu} id=${id} popover="auto" class="editor-menu" role="group" aria-label="More" onBeforeToggle=${place}>
-      ${ACTIONS.map(({ text, key, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span><kbd>${keyText(key)}</kbd></button>`)}
-      <p>Insert</p>
-      ${INSERTIONS.map(({ text, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span></button>`)}
-    </div>`;
+export function EditorMenu({ disabled }) {
+  return html`<${Menu} class="editor-menu" label="More" title="More: definition, rename, format, insert" face=${html`<${Icon} name="more" />`} disabled=${disabled}>
+    ${(toggle) => {
+      const entry = ({ text, key, work }) => html`<button key=${text} onClick=${() => (toggle(false), work())}><span>${text}</span>${key ? html`<kbd>${keyText(key)}</kbd>` : null}</button>`;
+      return html`${ACTIONS.map(entry)}<p>Insert</p>${INSERTIONS.map(entry)}`;
+    }}
+  <//>`;
 }

@@ -1,7 +1,7 @@
 // Pieces of models to insert: offered among the completions at the start of a line, and in the menu of the editor.
 
 import { snippet, syntaxTree } from "../vendor/codemirror.js";
-import { read } from "./language.js";
+import { shownText } from "./language.js";
 import { AGENT, BODY, groupOf, importGroups, importLines } from "./templates.js";
 
 const ACTR = "from actr3d.actr import *";
@@ -81,7 +81,7 @@ export function completionsOf() {
 
 /** Inserts a piece between two positions of the text that is shown, and the imports that it needs. */
 export function insertPiece(view, piece, from, to) {
-  const source = piece.source.replace("my_model.py", (read.path() ?? "my_model.py").split("/").at(-1));
+  const source = piece.source.replace("my_model.py", (shownText.path() ?? "my_model.py").split("/").at(-1));
   const missing = piece.needs.filter((line) => !imports(view.state.doc).some(({ text }) => text === line));
   if (missing.length === 0) return snippet(source)(view, null, from, to);
   const changes = view.state.changes(importing(view.state.doc, missing));

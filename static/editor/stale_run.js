@@ -39,7 +39,7 @@ export function runNew(path) {
 }
 
 /** Shows in the status line that the run is not one of the text in the editor, with a button to run that one. */
-export function Former() {
+export function StaleRunNote() {
   const facts = former.value;
   // The editor shows this itself, beside the text.
   if (!facts || (openTab.value === "editor" && shown.value.path === facts.path)) return null;

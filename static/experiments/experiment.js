@@ -46,7 +46,7 @@ function Progress({ experiment }) {
     going && done === 0 ? (workers > 0 ? "the first trials are running …" : "starting …") : null,
     rate && state === "running" ? rateText(rate) : null,
     remaining !== null && state === "running" ? `${durationText(remaining)} left` : null,
-    going && workers > 0 && done > 0 ? `${workers} ${workers === 1 ? "process" : "processes"}` : null,
+    going && workers > 0 && done > 0 ? counted(workers, "process", "processes") : null,
   ].filter(Boolean);
   return html`<div class="progress" role="status">
     <progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress>
@@ -66,7 +66,7 @@ function About({ experiment, facts }) {
     ...Object.entries(facts.factors ?? {}).map(([name, levels]) => [name, levelsText(levels)]),
     ...Object.entries(facts.groups ?? {}).map(([name, number]) => [
       `group ${name}`,
-      `${number} ${number === 1 ? "participant" : "participants"}; ${Object.entries(facts.group_parameters?.[name] ?? {}).map(([key, value]) => `${key} ${valueText(value)}`).join(", ") || "no parameters"}`,
+      `${counted(number, "participant")}; ${Object.entries(facts.group_parameters?.[name] ?? {}).map(([key, value]) => `${key} ${valueText(value)}`).join(", ") || "no parameters"}`,
     ]),
     ...Object.entries(facts.settings ?? {}).map(([name, value]) => [name, valueText(value)]),
     ["trials a combination", facts.trials_a_cell],

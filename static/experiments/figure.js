@@ -3,7 +3,8 @@
 import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
-import { Icon } from "../parts/icon.js";
+import { SaveButtons } from "../parts/save_buttons.js";
+import { useSize } from "../parts/size.js";
 import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
 import { CanvasSurface, scaled, wrapped } from "../parts/surface.js";
@@ -202,19 +203,12 @@ function pointText({ at, mean, error, participants, trials }, { x, unit }, line)
 function Plot({ lines, known, about, children }) {
   const area = useRef(null);
   const canvas = useRef(null);
-  const size = useSignal({ width: 0, height: 0 });
   const pointed = useSignal(null);
-  const { width, height } = size.value;
+  const { width, height } = useSize(area);
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
   const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...about.entries];
   const caption = `${meansText(lines.flatMap((line) => line.points), about)} ${about.counts}`;
   const title = headText({ name: about.measure, unit: about.unit });
-
-  useEffect(() => {
-    const watch = new ResizeObserver(([{ contentRect }]) => (size.value = { width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) }));
-    watch.observe(area.current);
-    return () => watch.disconnect();
-  }, []);
 
   useEffect(() => {
     if (width > 0) drawFigure(new CanvasSurface(scaled(canvas.current, width, height)), lines, figure, about.across);
@@ -255,8 +249,7 @@ function Plot({ lines, known, about, children }) {
       <b>${title}</b>
       <span class="legend">${legend.map((line) => html`<span key=${line.key}><${Sample} line=${line} />${line.name}</span>`)}</span>
       ${children}
-      <button class="bare" title="Save the figure as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
-      <button class="bare" title="Save the figure as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
+      <${SaveButtons} what="figure" save=${save} />
     </figcaption>
     <div class="area ${hit.length > 0 ? "hit" : ""}" ref=${area} onPointerMove=${point} onPointerLeave=${leave} onClick=${() => show(hit)}>
       <canvas ref=${canvas} role="img" aria-label=${title} style=${{ width: `${width}px`, height: `${height}px` }}></canvas>

@@ -5,7 +5,7 @@ import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { usePolled } from "./polling.js";
-import { isOpen, openTrial, waitOf, where } from "./list.js";
+import { isOpen, openTrial, pathOf, waitOf, where } from "./list.js";
 import { cellText, columnText, headText } from "./wording.js";
 
 const PAGE = 50; // rows
@@ -60,7 +60,7 @@ export function Trials({ experiment, facts }) {
   const conditions = JSON.stringify(where.value);
   useEffect(() => void (first.value = 0), [conditions, sort.value, failed.value, experiment.id]);
   const query = new URLSearchParams({ first: first.value, most: PAGE, where: conditions, sort: sort.value.by, down: sort.value.down, failed: failed.value });
-  const { answer, error, waiting } = usePolled(`/api/experiments/${encodeURIComponent(experiment.id)}/rows?${query}`, experiment.done);
+  const { answer, error, waiting } = usePolled(`${pathOf(experiment.id)}/rows?${query}`, experiment.done);
   const columns = answer ? shownOf(answer.columns, facts) : [];
   const sortBy = ({ name, type }) => () => (sort.value = { by: name, down: sort.value.by === name ? !sort.value.down : name !== "trial" && NUMBERS.includes(type) });
   const last = answer ? Math.min(answer.total, answer.first + PAGE) : 0;
@@ -72,8 +72,8 @@ export function Trials({ experiment, facts }) {
         ${answer ? html`<span class="number quiet" role="status">${answer.total === 0 ? "no trials" : `${(answer.first + 1).toLocaleString("en")}–${last.toLocaleString("en")} of ${counted(answer.total, "trial")}`}</span>` : null}
         ${answer && answer.total > PAGE
           ? html`<span class="choices">
-              <${Button} aria-label="Trials before" title="Before" disabled=${answer.first === 0} onClick=${() => (first.value = Math.max(0, answer.first - PAGE))}><span class="back"><${Icon} name="right" /></span><//>
-              <${Button} aria-label="Trials after" title="After" disabled=${last >= answer.total} onClick=${() => (first.value = answer.first + PAGE)}><${Icon} name="right" /><//>
+              <${Button} aria-label="Previous page" title="Previous page" disabled=${answer.first === 0} onClick=${() => (first.value = Math.max(0, answer.first - PAGE))}><span class="back"><${Icon} name="right" /></span><//>
+              <${Button} aria-label="Next page" title="Next page" disabled=${last >= answer.total} onClick=${() => (first.value = answer.first + PAGE)}><${Icon} name="right" /><//>
             </span>`
           : null}
       </span>

@@ -26,8 +26,7 @@ export function cellText(name, value, { groups }) {
 
 /** Returns the number of finished trials, of all. */
 export function doneText({ done, total }) {
-  const of = total === null ? "" : ` of ${total.toLocaleString("en")}`;
-  return `${done.toLocaleString("en")}${of} ${(total ?? done) === 1 ? "trial" : "trials"}`;
+  return total === null ? counted(done, "trial") : `${done.toLocaleString("en")} of ${counted(total, "trial")}`;
 }
 
 /** Returns a duration in a unit that suits it. */
@@ -46,7 +45,7 @@ export const failuresText = (failures) => `${counted(failures, "trial")} failed`
 
 /** Returns the values that replace those of the design, in one line. */
 export function changedText(changed) {
-  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${levelsText([value].flat())}`).join(" · ");
+  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${name === "seed" ? value : levelsText([value].flat())}`).join(" · ");
 }
 
 /** Returns a level as text that `readLevels` and the command read as the same value: a text that is no plain word in quotation marks. */

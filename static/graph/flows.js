@@ -1,7 +1,7 @@
 // What flows between the productions, buffers and modules of a run, as its events show it.
 
 import { agentOf, agentsOf } from "../inspector/agents.js";
-import { events, state, way } from "../store.js";
+import { events, state, history } from "../store.js";
 
 const ENDS = new Set(["conflict", "fire", "initialize"]); // what follows is no longer the work of the production that has fired
 const OWN = new Set(["buffer", "state", "request", "productions", "select", "add", "output"]); // these say nothing of where a buffer's content comes from
@@ -82,9 +82,9 @@ let begin = 0; // the number of the first event
 /** Returns what is known of the run that is shown. */
 export function flows() {
   const { first } = events.value;
-  if (of !== way.value || first < begin) {
+  if (of !== history.value || first < begin) {
     known = new Known();
-    of = way.value;
+    of = history.value;
   }
   begin = first;
   known.take(events.value, agentsOf(state.value?.parts));

@@ -2,6 +2,7 @@
 
 import { computed, html } from "../vendor/preact.js";
 import { optimistic } from "../parts/optimistic_value.js";
+import { toggled } from "../parts/toggled.js";
 import { sendCommand } from "../server.js";
 import { session, state } from "../store.js";
 
@@ -13,15 +14,11 @@ const list = optimistic(
 export const breakpoints = list.value;
 
 /** The production at whose breakpoint the run is paused; null if there is none. */
-export const held = computed(() => {
-  const { status, reason } = state.value ?? {};
-  return status === "paused" ? /^breakpoint: (.*) fired$/s.exec(reason)?.[1] ?? null : null;
-});
+export const held = computed(() => state.value?.breakpoint ?? null);
 
 /** Sets a breakpoint on a production, or removes it. */
 export function toggleBreakpoint(name) {
-  const now = breakpoints.value;
-  list.set(now.includes(name) ? now.filter((one) => one !== name) : [...now, name]);
+  list.set(toggled(breakpoints.value, name));
 }
 
 /** Shows that the run is paused at a breakpoint. */

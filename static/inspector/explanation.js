@@ -2,7 +2,7 @@
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
-import { events, session } from "../store.js";
+import { events, shownRun } from "../store.js";
 import { eventAt } from "./event_filter.js";
 
 /** The production to explain: {system, name}; null for the relevant one at that moment. */
@@ -12,9 +12,8 @@ export const at = signal(null);
 /** The explanation that is shown: "why", "conflict" or "retrievals". */
 export const shownReasons = remembered("reasons", "why");
 
-const run = computed(() => `${session.value?.id} ${session.value?.run}`);
 effect(() => {
-  run.value;
+  shownRun.value;
   at.value = null;
 });
 

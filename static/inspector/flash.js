@@ -1,13 +1,13 @@
 // Highlights a change: once, even if further changes follow quickly.
 
 import { html, useEffect, useRef, useState } from "../vendor/preact.js";
-import { session } from "../store.js";
+import { shownRun } from "../store.js";
 
 const CALM = 1200; // how long the text must stay the same before it is highlighted again [ms]
 
 /** A text that is highlighted when it has changed; but not for another run. */
 export function Flash({ text, class: name = "", children }) {
-  const run = `${session.value?.id} ${session.value?.run}`;
+  const run = shownRun.value;
   const before = useRef({ text, run });
   const timer = useRef(0);
   const [changed, setChanged] = useState(false);

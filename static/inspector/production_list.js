@@ -3,9 +3,11 @@
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { ChangeMenu } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
+import { wordsOf } from "../parts/words.js";
 import { runOf, systemsOf } from "./agents.js";
 import { at, production } from "./explanation.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
+import { buttonTitle } from "../keys.js";
 import { chosenText, isBare, isGone, nothing } from "../run_status.js";
 import { state } from "../store.js";
 
@@ -54,7 +56,7 @@ function Item({ item, chosen, several }) {
     if (chosen) line.current.scrollIntoView({ block: "nearest" });
   }, [chosen]);
   return html`<li ref=${line} class="${kind} ${chosen ? "chosen" : ""} ${held.value === name ? "at" : ""}">
-    <button class="dot" tabindex="-1" aria-pressed=${marked} aria-label="Breakpoint on ${name}" title="${marked ? "Remove the breakpoint" : "Pause whenever it fires"} (B)" onClick=${() => toggleBreakpoint(name)}></button>
+    <button class="dot" tabindex="-1" aria-pressed=${marked} aria-label="Breakpoint on ${name}" title=${buttonTitle({ key: "b" }, marked ? "Remove the breakpoint" : "Pause whenever it fires")} onClick=${() => toggleBreakpoint(name)}></button>
     <button class="name" tabindex=${chosen ? 0 : -1} aria-current=${chosen} title="${several ? `${system}: ` : ""}${name}${words ? `: ${words}` : ""}" onClick=${() => (production.value = { system, name })}>
       <span class="sign" role="img" aria-label=${words}>${sign}</span><span class="text">${name}</span>
       ${isForbidden(system, name) ? html`<span class="quiet" title="The user has forbidden it: it is left out of the next choice for which it matches">forbidden once</span>` : null}
@@ -67,7 +69,7 @@ function Item({ item, chosen, several }) {
 export function ProductionList({ all, chosen }) {
   const [words, setWords] = useState("");
   const box = useRef(null);
-  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const wanted = wordsOf(words);
   const shown = all.filter(({ system, name }) => wanted.every((word) => `${system} ${name}`.toLowerCase().includes(word)));
   const systems = [...new Set(shown.map(({ system }) => system))];
   const ordered = systems.flatMap((system) => shown.filter((one) => one.system === system));

@@ -1,8 +1,9 @@
 // A long table that draws only its visible rows; all rows have the same height.
 
-import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { useVisible } from "../parts/visible.js";
 
-const ROW = 23; // the height of a row, as panels/productions.css has it [px]
+const ROW = 23; // the height of a row, as inspector/rows.css has it [px]
 const HEAD = 26; // the height of the head [px]
 const SPARE = 12; // the number of rows drawn beyond the visible ones
 
@@ -19,16 +20,9 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   const box = useRef(null);
   const set = useRef(0);
   const away = useRef(false);
-  const [view, setView] = useState({ top: 0, height: 400 });
+  const view = useVisible(box);
   const last = useRef(chosen);
   const known = useRef(count);
-
-  // The box may be removed before its scroll or resize event arrives.
-  function look() {
-    if (!box.current) return;
-    const { scrollTop: top, clientHeight: height } = box.current;
-    setView((before) => (before.top === top && before.height === height ? before : { top, height }));
-  }
 
   function show(n) {
     const { scrollTop, clientHeight } = box.current;
@@ -44,14 +38,9 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
       const top = aim * ROW;
       away.current = top + ROW / 2 < scrollTop || top + ROW / 2 + HEAD > scrollTop + clientHeight;
     }
-    look();
+    view.look();
   }
 
-  useLayoutEffect(() => {
-    const watcher = new ResizeObserver(look);
-    watcher.observe(box.current);
-    return () => watcher.disconnect();
-  }, []);
   useLayoutEffect(() => {
     if (count < known.current) {
       // They belong to another run, or the first ones are gone and the numbers have shifted.
@@ -63,7 +52,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
       show(aim);
       set.current = box.current.scrollTop;
     }
-    look();
+    view.look();
   }, [aim, count, view.height]);
   useLayoutEffect(() => {
     if (chosen !== null && chosen !== last.current) show(chosen);
@@ -87,7 +76,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   function newest() {
     away.current = false;
     show(aim);
-    look();
+    view.look();
   }
 
   const from = Math.max(0, Math.floor(Math.min(view.top, count * ROW - view.height) / ROW) - SPARE);

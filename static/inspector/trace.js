@@ -1,6 +1,6 @@
 // The firing trace: the events, line by line, filtered as the user chooses.
 
-import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
+import { html, useMemo, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventMomentText, eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
@@ -8,11 +8,15 @@ import { Rows } from "./rows.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 import { askWhy } from "./explanation.js";
 import { Mixed, contactEvents } from "./contacts.js";
+import { Menu } from "../parts/menu.js";
+import { toggled } from "../parts/toggled.js";
 import { timeUnit } from "../parts/units.js";
+import { wordsOf } from "../parts/words.js";
 import { furthest, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
-import { events, session, state } from "../store.js";
+import { buttonTitle } from "../keys.js";
+import { events, session, shownRun, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
@@ -21,7 +25,7 @@ const timeWidth = () => (timeUnit(furthest.value) ? "88px" : "112px");
 const wantedWords = remembered("trace words", "");
 
 function testOf(isShown, words, agent) {
-  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const wanted = wordsOf(words);
   return (event) => {
     if (!isShown(event[2])) return false;
     if (agent && event[1] !== agent && !isBelow(event[1], agent)) return false;
@@ -32,28 +36,16 @@ function testOf(isShown, words, agent) {
 }
 
 function Groups() {
-  const box = useRef(null);
   const all = GROUPS.map(({ id }) => id);
-  const toggle = (id) => (groups.value = groups.value.includes(id) ? groups.value.filter((one) => one !== id) : [...groups.value, id]);
-  useEffect(() => {
-    const close = (event) => {
-      if (event.key === "Escape" || (event.type === "pointerdown" && !box.current.contains(event.target))) box.current.open = false;
-    };
-    for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, close);
-    return () => ["pointerdown", "keydown"].forEach((kind) => removeEventListener(kind, close));
-  }, []);
-  return html`<details class="menu" ref=${box}>
-    <summary title="Which events are shown">Events <span class="quiet">${groups.value.length}/${all.length}</span></summary>
-    <div class="menu-body" role="group" aria-label="Events that are shown">
-      ${GROUPS.map(
-        ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => toggle(id)} />${text}</label>`,
+  return html`<${Menu} class="events-menu" label="Events that are shown" look="" face=${html`Events <span class="quiet">${groups.value.length}/${all.length}</span>`}>
+    ${() => html`${GROUPS.map(
+        ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => (groups.value = toggled(groups.value, id))} />${text}</label>`,
       )}
       <div class="menu-end">
         <button onClick=${() => (groups.value = all)}>All</button>
-        <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>As at first</button>
-      </div>
-    </div>
-  </details>`;
+        <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>Defaults</button>
+      </div>`}
+  <//>`;
 }
 
 /** Takes the run to its first stop after an event. */
@@ -80,7 +72,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
       ${!isTouch && (kind === "fire" || chosen)
-        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${eventMomentText(time)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
+        ? html`<button class="bare" tabindex="-1" title=${buttonTitle({ key: "w" }, "Why? Explains this moment, and leaves the run where it is")} aria-label="Why at ${eventMomentText(time)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
   </tr>`;
@@ -89,7 +81,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
 export function FiringTrace() {
   const parts = state.value?.parts;
   const [agent, setAgent] = useState("");
-  const run = `${session.value?.id} ${session.value?.run}`;
+  const run = shownRun.value;
   const [choice, setChoice] = useState({ run, number: null });
   const chosen = choice.run === run ? choice.number : null;
   const setChosen = (number) => setChoice({ run, number });

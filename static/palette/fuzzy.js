@@ -1,6 +1,8 @@
 // Fuzzy search in short texts: each word of the search is in the text, or its letters are in order in one word of it, or at the starts of
 // several; better the nearer together and to starts of words.
 
+import { wordsOf } from "../parts/words.js";
+
 const START = 8; // for a letter at the start of a word
 const NEXT = 5; // for a letter right after the one found before
 const EARLY = 3; // for a whole word of the search at the start of the text
@@ -65,7 +67,7 @@ export function match(search, text) {
   const low = text.toLowerCase();
   let score = 0;
   const places = new Set();
-  for (const word of search.toLowerCase().split(/\s+/).filter(Boolean)) {
+  for (const word of wordsOf(search)) {
     const found = wordIn(word, low);
     if (found === null) return null;
     score += found.score;

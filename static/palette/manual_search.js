@@ -1,6 +1,7 @@
 // Searches the manual, in the index that its own search uses; it is read when the palette is first used.
 
 import { hasManual, listModels } from "../bar/models.js";
+import { wordsOf } from "../parts/words.js";
 import { signal } from "../vendor/preact.js";
 
 const MAX_RESULTS = 6;
@@ -43,7 +44,7 @@ function plainText(markup) {
 /** Returns the sections that contain all words of a search, the best first: {title, page, text, address}, with a piece of the text around
  * the first word. */
 export function inManual(search) {
-  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  const words = wordsOf(search);
   if (sections.value === null || words.join("").length < MIN_LETTERS) return [];
   const found = [];
   for (const section of sections.value) {

@@ -39,8 +39,9 @@ function found() {
     const byName = new Map(all.map((one) => [nameOf(one), one]));
     const last = recent.value.flatMap((name) => byName.get(name) ?? []);
     const others = permanent().filter((one) => one !== opening && one.ready() && !last.includes(one));
-    const groups = [...KEY_GROUPS, "Tab"].flatMap((group) => others.filter((one) => one.group === group));
-    return [...last.map((of) => ({ of, heading: "Used last" })), ...groups.map((of) => ({ of, heading: of.group }))];
+    const groups = [...new Set([...KEY_GROUPS, "Tab", ...others.map(({ group }) => group)])];
+    const ordered = groups.flatMap((group) => others.filter((one) => one.group === group));
+    return [...last.map((of) => ({ of, heading: "Used last" })), ...ordered.map((of) => ({ of, heading: of.group }))];
   }
   const rank = (one) => {
     const place = recent.value.indexOf(nameOf(one));

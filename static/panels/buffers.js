@@ -13,7 +13,7 @@ import { changesOf, noChange, useChange } from "../changes/changes.js";
 import { Problem } from "../parts/problem.js";
 import { counted } from "../parts/count.js";
 import { nothing, runStatus } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { running, shownRun, state } from "../store.js";
 
 const LINES = 3; // the number of lines of a chunk shown unless expanded
 const KEPT = 1000; // how long a row keeps its height while the run is active [ms]
@@ -44,7 +44,7 @@ function useLines(text, open) {
 const drafts = signal({});
 
 function keyOf(path) {
-  return `${session.value?.id} ${session.value?.run} ${path}`;
+  return `${shownRun.value} ${path}`;
 }
 
 function keepDraft(path, draft) {
@@ -174,8 +174,7 @@ function Buffers() {
   const groups = [...agents, null]
     .map((agent) => [agent, paths.filter((path) => agentOf(path, agents) === agent)])
     .filter(([, own]) => own.length > 0);
-  const run = `${session.value?.id} ${session.value?.run}`;
-  return html`<div class="agent-parts" key=${run}>
+  return html`<div class="agent-parts" key=${shownRun.value}>
     <${AtStart} />
     ${state.value.result ? html`<${Result} result=${state.value.result} />` : null}
     ${groups.map(([agent, own]) => html`<${Agent} key=${agent} agent=${agent} paths=${own} parts=${parts} requests=${requests} several=${groups.length > 1} />`)}

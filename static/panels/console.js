@@ -8,7 +8,7 @@ import { CopyButton, copyText } from "../parts/copy.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
-import { saveFile } from "../parts/picture.js";
+import { pictureName, saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
 import { goToTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
@@ -133,8 +133,7 @@ function Notes({ gaps, dropped, gone, all, ahead }) {
 }
 
 function save() {
-  const name = `${(session.value?.model ?? "model").split("/").at(-1).replace(/\.py$/, "")}_seed_${session.value?.seed ?? ""}_console.txt`;
-  saveFile(name, new Blob([listing().listed.text], { type: "text/plain;charset=utf-8" }));
+  saveFile(`${pictureName(session.value ?? { model: "model" }, "console")}.txt`, new Blob([listing().listed.text], { type: "text/plain;charset=utf-8" }));
 }
 
 function clearAll() {

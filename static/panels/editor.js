@@ -8,13 +8,13 @@ import { focusText, goToLine, keys, leaveText, showText } from "../editor/code.j
 import { Conflict } from "../editor/conflict.js";
 import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
 import { duplicate, makeNew, remove, rename } from "../editor/files.js";
-import { ACTIONS, INSERTIONS, Menu } from "../editor/menu.js";
+import { ACTIONS, EditorMenu, INSERTIONS } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { Unchanged } from "../editor/unchanged.js";
 import { saveAndRun } from "../editor/stale_run.js";
-import { Strip } from "../editor/banner.js";
+import { FileBanner } from "../editor/banner.js";
 import { command, commandsOf } from "../commands.js";
-import { noteKey } from "../keys.js";
+import { buttonTitle, noteKey } from "../keys.js";
 import { goToTab } from "../open_tab.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
@@ -43,8 +43,8 @@ async function runShown() {
 Object.assign(keys, { run: runShown, save: saveShown });
 const hasText = () => Boolean(shownDocument());
 const noText = () => "No file is open in the editor.";
-command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText, needs });
-command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText, needs });
+const saving = command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText, needs });
+const runningText = command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText, needs });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor", needs);
 
 const onShown = (work) => () => shownDocument() && work(shownDocument());
@@ -114,7 +114,7 @@ function Files({ path, document }) {
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
     ${tool("check", "Check the model without a run: a file with a function build is executed for the first 10 ms of the run, any other file is only compiled", () => checkByLoading(document))}
-    <${Menu} disabled=${!document} />
+    <${EditorMenu} disabled=${!document} />
   </div>`;
 }
 
@@ -128,8 +128,8 @@ function Standing({ document }) {
       ${document.saving.value ? html`<span class="quiet">saving …</span>` : dirty ? html`<span class="unsaved">● unsaved</span>` : null}
       ${note && !document.saving.value ? html`<span class="quiet" title=${note}>${note}</span>` : null}
     </span>
-    <${Button} disabled=${!dirty} title="Save (Ctrl S)" onClick=${saveShown}>Save<//>
-    <button class="primary" title="Save, and run from the start (Ctrl Enter)" onClick=${runShown}>Save and run</button>
+    <${Button} disabled=${!dirty} title=${buttonTitle(saving, "Save")} onClick=${saveShown}>Save<//>
+    <button class="primary" title=${buttonTitle(runningText, "Save, and run from the start")} onClick=${runShown}>Save and run</button>
   </div>`;
 }
 
@@ -165,7 +165,7 @@ function Editor() {
     ${compares ? html`<${Conflict} document=${document} choose=${(which) => choose(document, which)} />` : null}
     <div class="code" ref=${place} hidden=${!document || compares}></div>
     ${document
-      ? html`${compares ? null : html`<${Unchanged} document=${document} /><${Strip} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
+      ? html`${compares ? null : html`<${Unchanged} document=${document} /><${FileBanner} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
       : html`<div class="empty">
           <p class=${error ? "bad" : ""}>${error ?? (path ? "Being read …" : "No file is open. Choose one above, or make a new model.")}</p>
           ${path && !error ? null : html`<button onClick=${makeNew}>Make a new model</button>`}

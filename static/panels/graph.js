@@ -1,6 +1,6 @@
 // The graph of each agent: productions, the buffers that they read and write, the modules that they ask, and what flows at this moment.
 
-import { html, signal, useEffect, useRef, useState } from "../vendor/preact.js";
+import { html, signal, useRef } from "../vendor/preact.js";
 import { agentsOf, isBelow, nameIn } from "../inspector/agents.js";
 import { at, production as explainedProduction, shownReasons } from "../inspector/explanation.js";
 import { flows, justNow, keyOf } from "../graph/flows.js";
@@ -9,10 +9,11 @@ import { pictureOfGraph } from "../graph/picture.js";
 import { openTab } from "../open_tab.js";
 import { useAnswer } from "../parts/answer.js";
 import { chunkText } from "../parts/chunk.js";
-import { Icon } from "../parts/icon.js";
+import { SaveButtons } from "../parts/save_buttons.js";
+import { useSize } from "../parts/size.js";
 import { pictureName, runName, savePicture } from "../parts/picture.js";
 import { nothing } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { period, running, session, state } from "../store.js";
 
 const QUESTION = { type: "explain" };
 const KINDS = { reads: "reads", writes: "writes", asks: "asks", fills: "fills" };
@@ -36,7 +37,7 @@ function graphOf(agent, parts, reasons) {
   const modules = own.filter((path) => ["module", "memory"].includes(parts[path].is));
   const productions = systems.flatMap((system) => parts[system].productions.map((name) => ({ id: keyOf(system, name), system, name })));
   const belongs = new Set(own);
-  const { fired, answered } = justNow(session.value?.period || 0.01, (source) => belongs.has(source));
+  const { fired, answered } = justNow(period.value, (source) => belongs.has(source));
   const known = flows();
   const there = new Set([...buffers, ...modules]);
   const edges = [];
@@ -190,20 +191,15 @@ function save(element, kind) {
 
 function Graph() {
   const box = useRef(null);
-  const [width, setWidth] = useState(0);
+  const { width } = useSize(box);
   const { answer } = useAnswer(QUESTION, { once: true });
   const parts = state.value?.parts ?? {};
   const agents = agentsOf(parts);
-  useEffect(() => {
-    const watcher = new ResizeObserver(([{ contentRect }]) => setWidth(Math.floor(contentRect.width)));
-    watcher.observe(box.current);
-    return () => watcher.disconnect();
-  }, []);
   const reasons = new Map((answer ?? []).flatMap((one) => one.productions).map((reason) => [keyOf(reason.system, reason.name), reason]));
   return html`<div class="graph" ref=${box}>
     ${agents.length === 0 ? html`<p class="empty">${nothing("This model has no agent: there is nothing to draw.")}</p>` : html`<div class="graph-head">
       <${Legend} />
-      ${["png", "svg"].map((kind) => html`<button key=${kind} class="bare" title="Save the graph as ${kind === "png" ? "a PNG" : "an SVG"}" onClick=${() => save(box.current, kind)}><${Icon} name="download" />${kind.toUpperCase()}</button>`)}
+      <${SaveButtons} what="graph" save=${(kind) => save(box.current, kind)} />
     </div>`}
     ${width > 0 ? agents.map((agent) => html`<${Agent} key=${agent} agent=${agent} parts=${parts} reasons=${reasons} width=${width - 2 * MARGIN} several=${agents.length > 1} />`) : null}
   </div>`;

@@ -13,7 +13,8 @@ import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { remembered } from "../local_storage.js";
 import { nothing } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { running, shownRun, state } from "../store.js";
+import { runTimeText } from "../timeline/seek.js";
 
 const MAX_CHUNKS = 5000; // the maximum number of chunks requested
 const LIVE = 150; // a memory with at most this many chunks is also shown while the run is active
@@ -72,7 +73,7 @@ function Chunks({ memory, schema }) {
       <input type="search" aria-label="Search the memory" placeholder="Search" value=${typed} onInput=${(event) => setTyped(event.currentTarget.value)} />
       <${Note} result=${result} schema=${found} />
       ${schema ? null : html`<${AddChunk} memory=${memory} />`}
-      ${running.value && !live && mine ? html`<span class="quiet" role="status">as at ${valueText(result.time)} s</span>` : null}
+      ${running.value && !live && mine ? html`<span class="quiet" role="status">as it was at ${runTimeText(result.time, 3)}</span>` : null}
     </div>
     <${Placeholder} answer=${mine ? { ...result, waiting: false } : result} />
     ${mine && !schema ? html`<${MemoryTable} answer=${mine} words=${words} />` : null}
@@ -93,7 +94,7 @@ function Memory() {
   ];
   const shown = views.some(({ id }) => id === view.value) ? view.value : views[0].id;
   const memory = memories.includes(wanted.value) ? wanted.value : memories[0];
-  return html`<div class="memory" key="${session.value?.id} ${session.value?.run}">
+  return html`<div class="memory" key=${shownRun.value}>
     <${AtStart} />
     ${views.length > 1 || memories.length > 1
       ? html`<div class="tools heads">

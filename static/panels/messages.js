@@ -5,6 +5,7 @@ import { command } from "../commands.js";
 import { hasMore } from "../editor/marks.js";
 import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
+import { toggled } from "../parts/toggled.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
 import { goToTab } from "../open_tab.js";
@@ -40,7 +41,7 @@ command({
 });
 
 function toggle(level) {
-  hidden.value = hidden.value.includes(level) ? hidden.value.filter((other) => other !== level) : [...hidden.value, level];
+  hidden.value = toggled(hidden.value, level);
 }
 
 function Filter() {

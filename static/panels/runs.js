@@ -4,6 +4,7 @@ import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { wordsOf } from "../parts/words.js";
 import { SelectedRuns } from "../runs/selected_runs.js";
 import { goToTab } from "../open_tab.js";
 import { addFiles, chooseFiles, deleteRuns, openRun } from "../runs/actions.js";
@@ -18,7 +19,7 @@ command({ text: "Open a recording file …", group: "Run", work: chooseFiles, ne
 
 /** Returns the recordings that contain every word of a search. */
 function found(all, search) {
-  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  const words = wordsOf(search);
   if (words.length === 0) return all;
   return all.filter((run) => {
     const text = textOf(run);

@@ -52,7 +52,7 @@ function hideByEscape(event) {
 /** The controls for this browser's view of the scene, and for the overlays shared by all viewers. */
 function ViewBar() {
   return html`<div class="view-controls"><div class="view-bar" role="toolbar" aria-label="3D view">
-      <select aria-label="Camera" title="From where the scene is seen (V)" value=${view.value} onChange=${(event) => (view.value = event.currentTarget.value)}>
+      <select aria-label="Camera" title=${buttonTitle(next, "From where the scene is seen")} value=${view.value} onChange=${(event) => (view.value = event.currentTarget.value)}>
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
@@ -117,7 +117,7 @@ async function makeVideo() {
 
 const isShown = () => hasScene.value;
 const noView = () => "This model has no 3D view.";
-command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown, why: noView });
+const next = command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown, why: noView });
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown, why: noView });
 const keep = command({ text: "Save the 3D view as a picture (PNG)", also: "export download screenshot", group: "3D view", work: keepPicture, ready: isShown, why: noView });
 const film = command({ text: "Make a video of the 3D view (WebM) …", also: "export film movie", group: "3D view", work: makeVideo, ready: () => isShown() && alive.value, why: () => (isShown() ? runStatus.value.text : noView()) });
@@ -137,7 +137,7 @@ function Lag({ frame }) {
   useEffect(() => {
     if (!running.value) return undefined;
     const timer = setInterval(() => {
-      const time = Number(/t = ([\d.]+) s/.exec(frame.current?.contentDocument?.body?.textContent)?.[1] ?? NaN); // from viser's own panel
+      const time = frame.current?.contentWindow?.scene?.drawnTime?.() ?? NaN;
       const { time: now, measured } = state.peek() ?? {};
       shown.value = now - time > LATE * (measured ?? Infinity) ? time : null;
     }, BETWEEN);

@@ -44,8 +44,9 @@ export function read(parameter, text) {
   if (text === "" && optional) return { value: null };
   if (takes === "choice") return { value: parameter.choices.find((choice) => String(choice) === text) };
   if (takes !== "number" && takes !== "whole number") return { value: text };
-  const value = Number(String(text).replace(",", "."));
-  if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `must be a ${takes}` };
+  const value = Number(text);
+  const hint = String(text).includes(",") ? "; the decimal point is '.', and nothing separates thousands" : "";
+  if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `must be a ${takes}${hint}` };
   if (takes === "whole number" && !Number.isInteger(value)) return { problem: "must be a whole number" };
   const { above, least, below, most } = parameter;
   const held = (above === null || value > above) && (least === null || value >= least) && (below === null || value < below) && (most === null || value <= most);

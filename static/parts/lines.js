@@ -1,6 +1,7 @@
 // Long text that draws only its visible lines; it stays at its end until the user scrolls away from it.
 
-import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { useVisible } from "./visible.js";
 
 const LINE = 18; // the height of a line, as lines.css has it [px]
 const SPARE = 20; // the number of lines drawn beyond the visible ones
@@ -13,35 +14,24 @@ const SPARE = 20; // the number of lines drawn beyond the visible ones
 export function Lines({ label, count, line, of }) {
   const box = useRef(null);
   const atEnd = useRef(true);
-  const [view, setView] = useState({ top: 0, height: 400 });
-
-  function look() {
-    if (!box.current) return;
-    const { scrollTop: top, clientHeight: height } = box.current;
-    setView((before) => (before.top === top && before.height === height ? before : { top, height }));
-  }
+  const toEnd = () => {
+    if (atEnd.current && box.current) box.current.scrollTop = box.current.scrollHeight;
+  };
+  const view = useVisible(box, toEnd);
 
   function scrolled() {
     if (!box.current) return;
     const { scrollTop, clientHeight, scrollHeight } = box.current;
     atEnd.current = scrollTop + clientHeight >= scrollHeight - LINE;
-    look();
+    view.look();
   }
 
-  useLayoutEffect(() => {
-    const watcher = new ResizeObserver(() => {
-      if (atEnd.current && box.current) box.current.scrollTop = box.current.scrollHeight;
-      look();
-    });
-    watcher.observe(box.current);
-    return () => watcher.disconnect();
-  }, []);
   useLayoutEffect(() => {
     atEnd.current = true;
   }, [of]);
   useLayoutEffect(() => {
-    if (atEnd.current) box.current.scrollTop = box.current.scrollHeight;
-    look();
+    toEnd();
+    view.look();
   }, [count, of]);
 
   const top = Math.max(0, Math.min(view.top, count * LINE - view.height));

@@ -1,7 +1,7 @@
 // A value that the user sets and the run confirms, such as a speed: the latest input is shown until the run has accepted it.
 
 import { computed, signal } from "../vendor/preact.js";
-import { heldBack, sendCommand } from "../server.js";
+import { unsent, sendCommand } from "../server.js";
 import { session } from "../store.js";
 
 /**
@@ -17,7 +17,7 @@ export function optimistic(reported, command, send = sendCommand) {
   let [sent, answer] = [null, null]; // the last value that was sent, and the promise of its answer
 
   function sendNewest() {
-    heldBack.delete(sendNewest);
+    unsent.delete(sendNewest);
     if (sent === wanted.peek()) return;
     sent = wanted.peek();
     answer = send(command(sent.value));
@@ -30,14 +30,14 @@ export function optimistic(reported, command, send = sendCommand) {
       last = answer;
       await last;
     }
-    heldBack.delete(sendNewest);
+    unsent.delete(sendNewest);
     wanted.value = sent = answer = null;
   }
 
   function set(value) {
     const sending = wanted.peek() !== null;
     wanted.value = { value };
-    if (sending) heldBack.add(sendNewest);
+    if (sending) unsent.add(sendNewest);
     else sendWanted();
   }
 

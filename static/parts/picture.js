@@ -15,14 +15,16 @@ const MARGIN = 12; // [px]
  * @property {(surface) => void} draw Draws it, from 0, 0.
  */
 
+const hasSeed = (seed) => seed !== null && seed !== undefined;
+
 /** Returns the name of a picture's file, without its ending: of which run, and what. */
 export function pictureName({ model, seed }, what) {
-  return `${model.replace(/\.py$/, "")} seed ${seed} ${what}`;
+  return `${model.replace(/\.py$/, "")}${hasSeed(seed) ? ` seed ${seed}` : ""} ${what}`;
 }
 
 /** Returns a description of a run for the line above a picture. */
 export function runName({ model, run, seed }) {
-  return `${model}, run ${run}${seed === null || seed === undefined ? "" : `, seed ${seed}`}`;
+  return `${model}, run ${run}${hasSeed(seed) ? `, seed ${seed}` : ""}`;
 }
 
 /** Draws a picture with its title and background. */

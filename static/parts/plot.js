@@ -4,8 +4,9 @@ import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js
 import { dark } from "../theme.js";
 import { drawCurves, drawLegend, drawTimes, rangeOf, seriesColour, valueAt } from "./curve.js";
 import { csvText } from "./csv.js";
-import { Icon } from "./icon.js";
 import { saveFile, savePicture } from "./picture.js";
+import { SaveButtons } from "./save_buttons.js";
+import { useSize } from "./size.js";
 import { CanvasSurface, scaled } from "./surface.js";
 import { numberText } from "./ticks.js";
 import { timeText } from "./units.js";
@@ -48,7 +49,8 @@ function drawPlot(surface, width, height, { series, times, span, range, at }) {
 export function Plot({ title, series, times = [], span = null, height = 120, cursor = null, onPick = null, source = "" }) {
   const canvas = useRef(null);
   const own = useSignal(null);
-  const width = useSignal(0);
+  const area = useRef(null);
+  const { width } = useSize(area);
   const pointed = cursor ?? own;
   const shown = span ?? spanOf(series, times);
   const range = useMemo(() => rangeOf(series), [series]);
@@ -56,18 +58,12 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
   const at = pointed.value;
 
   useEffect(() => {
-    const watch = new ResizeObserver(([{ contentRect }]) => (width.value = Math.floor(contentRect.width)));
-    watch.observe(canvas.current.parentElement);
-    return () => watch.disconnect();
-  }, []);
-
-  useEffect(() => {
-    const context = scaled(canvas.current, width.value, height);
-    if (width.value > 0) drawPlot(new CanvasSurface(context), width.value, height, { series, times, span: shown, range, at });
-  }, [series, times, times.length, shown.from, shown.to, range, at, width.value, height, dark.value]);
+    const context = scaled(canvas.current, width, height);
+    if (width > 0) drawPlot(new CanvasSurface(context), width, height, { series, times, span: shown, range, at });
+  }, [series, times, times.length, shown.from, shown.to, range, at, width, height, dark.value]);
 
   function timeOf(event) {
-    const box = boxOf(width.value, height);
+    const box = boxOf(width, height);
     const time = shown.from + ((event.offsetX - box.x) / box.width) * (shown.to - shown.from);
     return Math.min(Math.max(time, shown.from), shown.to);
   }
@@ -78,7 +74,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
       const curves = series.map((one) => ({ ...one, name: `${title} ${one.name}`, times: one.times ?? times }));
       return saveFile(`${name}.csv`, new Blob([csvText(curves)], { type: "text/csv" }));
     }
-    const wide = Math.max(640, width.value);
+    const wide = Math.max(640, width);
     const draw = (surface) => {
       drawLegend(surface, LEFT, 8, wide - LEFT, series);
       const below = { ...boxOf(wide, height), y: 24 };
@@ -101,11 +97,9 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
         })}
       </span>
       <span class="plot-time number quiet">${at === null ? "" : timeText(at, 2, shown.to)}</span>
-      <button class="bare" title="Save the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
-      <button class="bare" title="Save the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
-      <button class="bare" title="Save the values as CSV" onClick=${() => save("csv")}><${Icon} name="download" />CSV</button>
+      <${SaveButtons} what="plot" kinds=${["png", "svg", "csv"]} save=${save} />
     </figcaption>
-    <div class="plot-area" style=${{ height: `${height}px` }}>
+    <div ref=${area} class="plot-area" style=${{ height: `${height}px` }}>
       <canvas
         ref=${canvas}
         role="img"

@@ -5,14 +5,14 @@ import { signal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
-import { call, sendFile, sinceNow } from "../server.js";
+import { call, recordingPath, sendFile, sinceNow } from "../server.js";
 import { me, notify, session } from "../store.js";
 import { forgetRun, listRuns, runs } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
 import { nameOf, sizeText, whenText } from "./wording.js";
 
-/** The results of replays by id: {since, share} while one is running, then {agrees, text}. */
+/** The results of replays by id: {since, share} while one is running, then {verdict, text}. */
 export const replays = signal({});
 /** The current slow action; null for none: {text, done?, of?}. */
 export const busy = signal(null);
@@ -77,11 +77,12 @@ function note(id, replay) {
   replays.value = { ...replays.value, [id]: replay };
 }
 
-/** Runs a recording again in a separate process; the result is stored in `replays`. */
+/** Runs a recording again in a separate process, unless it is running; the result is stored in `replays`. */
 export async function replayRun(run) {
+  if (cancels.has(run.id)) return;
   const cancel = new AbortController();
   cancels.set(run.id, cancel);
-  const path = `/api/recordings/${run.id}/replay`;
+  const path = `${recordingPath(run.id)}/replay`;
   note(run.id, { since: Date.now(), share: 0 });
   const look = setInterval(async () => {
     const progress = await call("GET", path, undefined, cancel.signal).catch(() => null);
@@ -90,9 +91,9 @@ export async function replayRun(run) {
   }, LOOK);
   try {
     const verdict = await withTrust(run.id, "Replaying it", (trust) => call("POST", path, { trust }, cancel.signal));
-    note(run.id, verdict ?? { agrees: null, text: "cancelled" });
+    note(run.id, verdict ?? { verdict: null, text: "cancelled" });
   } catch (error) {
-    note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
+    note(run.id, { verdict: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }
   clearInterval(look);
   cancels.delete(run.id);
@@ -138,7 +139,7 @@ export async function deleteRuns(all) {
   for (const [n, run] of list.entries()) {
     busy.value = { text: "Deleting", done: n, of: list.length };
     try {
-      const { trash } = await call("POST", `/api/recordings/${run.id}/delete`, {});
+      const { trash } = await call("POST", `${recordingPath(run.id)}/delete`, {});
       forgetRun(run.id);
       deleted.push({ run, trash });
     } catch (error) {

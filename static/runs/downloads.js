@@ -1,8 +1,9 @@
 // Downloads of recordings: created by the server, which may take a while; several at once.
 
-import { html, signal, useEffect, useSignal } from "../vendor/preact.js";
+import { html, signal } from "../vendor/preact.js";
+import { useElapsed } from "../parts/elapsed.js";
 import { saveFile } from "../parts/picture.js";
-import { fetchFile } from "../server.js";
+import { fetchFile, recordingPath } from "../server.js";
 import { notify } from "../store.js";
 import { nameOf, sizeText } from "./wording.js";
 
@@ -19,6 +20,9 @@ const OF_STATES = ["replay.html", "states.csv"];
 export function formatsOf(run) {
   return run.problem ? FORMATS.slice(0, 1) : FORMATS.filter(([format]) => run.states > 0 || !OF_STATES.includes(format));
 }
+
+/** Returns the address of the file of a recording in a format. */
+export const filePath = (run, format) => `${recordingPath(run.id)}/file?form=${format}`;
 
 /** The active downloads: {key, text, since, come, all}, with the bytes received and their total, 0 while the file is being created. */
 const downloads = signal([]);
@@ -37,7 +41,7 @@ export async function download(run, format, title) {
   const text = `${title} of ${nameOf(run)}`;
   downloads.value = [...downloads.value, { key, text, since: Date.now(), come: 0, all: 0 }];
   try {
-    const blob = await fetchFile(`/api/recordings/${run.id}/file?form=${format}`, cancel.signal, (come, all) => note(key, { come, all }));
+    const blob = await fetchFile(filePath(run, format), cancel.signal, (come, all) => note(key, { come, all }));
     saveFile(key, blob);
   } catch (error) {
     if (!cancel.signal.aborted) notify(`Not downloaded: ${text}: ${error.message}`);
@@ -47,12 +51,8 @@ export async function download(run, format, title) {
 }
 
 function Going({ key_, text, since, come, all }) {
-  const passed = useSignal(0);
-  useEffect(() => {
-    const clock = setInterval(() => (passed.value = (Date.now() - since) / 1000), 200);
-    return () => clearInterval(clock);
-  }, [since]);
-  const far = all > 0 ? `${sizeText(come)} of ${sizeText(all)}` : `being made, ${passed.value.toFixed(0)} s`;
+  const elapsed = useElapsed(since);
+  const far = all > 0 ? `${sizeText(come)} of ${sizeText(all)}` : `being made, ${elapsed}`;
   return html`<li>
     <progress aria-label="Downloading" value=${all > 0 ? come / all : undefined}></progress>
     <span class="text">${text}</span> <span class="number quiet">${far}</span>

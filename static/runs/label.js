@@ -2,7 +2,7 @@
 
 import { dialog } from "../parts/dialog.js";
 import { Problem } from "../parts/problem.js";
-import { call } from "../server.js";
+import { call, recordingPath } from "../server.js";
 import { notify } from "../store.js";
 import { html, signal } from "../vendor/preact.js";
 import { listRuns } from "./list.js";
@@ -10,7 +10,7 @@ import { listRuns } from "./list.js";
 /** Asks for the name, the note and the tags of a run, and stores those that were changed. They are read first, and what another browser
  * has changed meanwhile is shown before it is replaced. */
 export async function labelRun(run) {
-  const path = `/api/recordings/${encodeURIComponent(run.id)}`;
+  const path = recordingPath(run.id);
   let known;
   try {
     known = await call("GET", path);

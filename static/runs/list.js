@@ -2,7 +2,7 @@
 
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
-import { session, state, way } from "../store.js";
+import { session, state, history } from "../store.js";
 
 const PART = 250;
 const LATER = 700; // [ms]
@@ -94,7 +94,7 @@ export function forgetRun(id) {
 /** Keeps the list up to date while it is shown: the server reports whenever a recording of any session began, ended or was changed; what
  * others have changed in the folder is seen when the user returns to the page. Returns the function that stops this. */
 export function followRuns() {
-  const key = computed(() => `${session.value?.id} ${session.value?.recording_changes} ${way.value}`);
+  const key = computed(() => `${session.value?.id} ${session.value?.recording_changes} ${history.value}`);
   const end = effect(() => {
     key.value;
     untracked(() => void listRuns());

@@ -1,13 +1,15 @@
 // The chosen recordings, and the actions on them.
 
-import { html, useEffect, useSignal } from "../vendor/preact.js";
+import { html } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
+import { useElapsed } from "../parts/elapsed.js";
 import { Icon } from "../parts/icon.js";
+import { buttonTitle } from "../keys.js";
 import { remembered } from "../local_storage.js";
 import { shownRecording } from "../store.js";
 import { compareRuns } from "../compare/compare.js";
 import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./actions.js";
-import { download, Downloads, formatsOf } from "./downloads.js";
+import { download, Downloads, filePath, formatsOf } from "./downloads.js";
 import { labelRun } from "./label.js";
 import { runs } from "./list.js";
 import { endedText, isDifferent, labelOf, measureText, originText, outcomeText, settingsOf, whenInFull } from "./wording.js";
@@ -16,30 +18,28 @@ function DownloadLinks({ run }) {
   const get = (event, format, text) => (event.preventDefault(), download(run, format, text));
   return html`<span class="downloads">
     <${Icon} name="download" />
-    ${formatsOf(run).map(([format, text, title]) => html`<a key=${format} href=${`/api/recordings/${run.id}/file?form=${format}`} download title=${title} onClick=${(event) => get(event, format, text)}>${text}</a>`)}
+    ${formatsOf(run).map(([format, text, title]) => html`<a key=${format} href=${filePath(run, format)} download title=${title} onClick=${(event) => get(event, format, text)}>${text}</a>`)}
   </span>`;
 }
 
+const VERDICTS = {
+  agrees: ["Every byte agrees.", "good"],
+  "agrees up to its end": ["It agrees up to the end of the recording.", "good"],
+  differs: ["It differs.", "bad"],
+};
+
 function Replayed({ run }) {
   const result = replays.value[run.id];
-  const passed = useSignal(0);
-  const since = result?.since;
-  useEffect(() => {
-    if (!since) return undefined;
-    passed.value = 0;
-    const clock = setInterval(() => (passed.value = (Date.now() - since) / 1000), 200);
-    return () => clearInterval(clock);
-  }, [since]);
+  const elapsed = useElapsed(result?.since);
   if (!result) return null;
-  if (since) {
+  if (result.since) {
     return html`<div class="replayed" role="status">
-      <progress aria-label="Running again" value=${result.share || undefined}></progress> running again … <span class="number">${result.share ? `${Math.floor(100 * result.share)} %, ` : ""}${passed.value.toFixed(0)} s</span>
+      <progress aria-label="Running again" value=${result.share || undefined}></progress> running again … <span class="number">${result.share ? `${Math.floor(100 * result.share)} %, ` : ""}${elapsed}</span>
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = result.agrees === true ? (result.text.startsWith("agrees up to") ? "It agrees up to the end of the recording." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
-  const text = result.text.replace(/^(every byte agrees|agrees up to the end of the recording|differs): /, "");
-  return html`<div class="replayed" role="status"><b class=${result.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
+  const [head, kind] = VERDICTS[result.verdict] ?? ["Not known.", "bad"];
+  return html`<div class="replayed" role="status"><b class=${kind}>${head}</b> <span>${result.text}</span></div>`;
 }
 
 /** Whether the facts about the chosen run are shown; where there is little room, the list has it at first. */
@@ -82,7 +82,7 @@ function One({ run }) {
       <${Button} disabled=${idle || own || !shownRecording.value} title=${noCompare} onClick=${() => compareRuns(run.id, shownRecording.value)}>Compare with the present run<//>
       <${Button} disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …<//>
       <span class="stretch"></span>
-      <${Button} class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /><//>
+      <${Button} class="danger bare" aria-label="Delete" title=${buttonTitle({ key: "Delete" }, "Delete")} disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /><//>
     </div>
     <div class="files">
       <${DownloadLinks} run=${run} />

@@ -2,18 +2,20 @@
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { timeText } from "../parts/units.js";
+import { useVisible } from "../parts/visible.js";
 import { remembered } from "../local_storage.js";
 import { alive, session, shownRecording, state } from "../store.js";
 import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, originText, outcomeText, ownName, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
-const ROW = 44; // [px]; style.css has the same
+const ROW = 44; // [px]; panels/runs.css has the same
+const MAX_DIGITS = 19; // of a seed: aligned to the right, texts of numbers are in the order of the numbers
 const AROUND = 6; // the number of rows drawn beyond the visible ones
 
 /** The sort keys: their column headings, and the values to compare. */
 const KEYS = {
   made: { column: "when", text: "Began", of: (run) => run.made },
   model: { column: "model", text: "Model", of: (run) => run.model },
-  seed: { column: "model", text: "Seed", of: (run) => run.seed ?? -1 },
+  seed: { column: "model", text: "Seed", of: (run) => String(run.seed ?? "").padStart(MAX_DIGITS) },
   outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(firstMeasure(run)?.[1] ?? 0).toFixed(2).padStart(9, "0")}` },
   ended: { column: "outcome", text: "End", of: endedText },
   time: { column: "time", text: "Time", of: (run) => run.time },
@@ -109,7 +111,7 @@ function Row({ run, list, number, now, toggle, open }) {
  */
 export function Table({ list, open }) {
   const box = useRef(null);
-  const seen = useSignal({ top: 0, height: 600 });
+  const seen = useVisible(box);
   const now = useSignal(Date.now() / 1000);
   const last = useRef(null);
   const focused = useSignal(null); // the id of the run whose row had the focus last
@@ -118,20 +120,12 @@ export function Table({ list, open }) {
   useLayoutEffect(() => {
     const place = box.current;
     place.addEventListener("focusin", ({ target }) => (focused.value = target.closest("[data-run]")?.dataset.run ?? null));
-    const look = () => (seen.value = { top: place.scrollTop, height: place.clientHeight });
-    look();
-    const watch = new ResizeObserver(look);
-    watch.observe(place);
-    place.addEventListener("scroll", look, { passive: true });
     const clock = setInterval(() => (now.value = Date.now() / 1000), 20_000);
-    return () => {
-      watch.disconnect();
-      clearInterval(clock);
-    };
+    return () => clearInterval(clock);
   }, []);
 
-  const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.value.top / ROW) - AROUND));
-  const beyond = Math.min(list.length, first + Math.ceil(seen.value.height / ROW) + 2 * AROUND);
+  const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.top / ROW) - AROUND));
+  const beyond = Math.min(list.length, first + Math.ceil(seen.height / ROW) + 2 * AROUND);
   const kept = list.findIndex((run) => run.id === focused.value);
   if (kept >= 0) spot.current = kept;
   // The rows before and after it are drawn too, for the keys that lead to them; when it is deleted, one of them gets the focus.
@@ -157,7 +151,7 @@ export function Table({ list, open }) {
   const all = list.length > 0 && list.every((run) => chosen.value.has(run.id));
   const chooseAll = () => (chosen.value = new Set(all ? [] : list.map((run) => run.id)));
 
-  return html`<div class="runs-list" ref=${box} tabindex="-1">
+  return html`<div class="runs-list" ref=${box} tabindex="-1" onScroll=${seen.look}>
     <table class="runs-table" aria-label="Recordings" aria-rowcount=${list.length + 1}>
       <thead>
         <tr aria-rowindex="1">

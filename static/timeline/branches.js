@@ -7,6 +7,7 @@ import { remembered } from "../local_storage.js";
 import { isAvailable } from "../needs.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
+import { useSize } from "../parts/size.js";
 import { timeText } from "../parts/units.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
@@ -16,7 +17,7 @@ import { nameInTree, outcomeText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
 import { notify, session, shownRecording as shown } from "../store.js";
-import { computed, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { computed, html, useEffect, useRef } from "../vendor/preact.js";
 import { commandText } from "./commands.js";
 import { placeOf } from "./draw.js";
 import { column } from "./rows.js";
@@ -99,15 +100,9 @@ function Row({ run, depth, width }) {
 
 export function Branches() {
   const box = useRef(null);
-  const [width, setWidth] = useState(600);
   const several = tree.value.length > 1;
+  const { width } = useSize(box, several);
   useEffect(followRuns, []);
-  useLayoutEffect(() => {
-    if (!box.current) return undefined;
-    const watch = new ResizeObserver(() => box.current && setWidth(box.current.clientWidth));
-    watch.observe(box.current);
-    return () => watch.disconnect();
-  }, [several]);
   if (!several) return null;
   return html`<section ref=${box} class="branches" aria-label="Branches">
     <button class="bare branches-head" aria-expanded=${open.value} onClick=${() => (open.value = !open.value)}><${Icon} name=${open.value ? "down" : "right"} />${counted(tree.value.filter(({ depth }) => depth > 0).length, "branch", "branches")}</button>

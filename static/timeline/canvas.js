@@ -3,7 +3,7 @@
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { fetching } from "../earlier_events.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
-import { events, running, session, state, way } from "../store.js";
+import { events, running, session, state, history } from "../store.js";
 import { dark } from "../theme.js";
 import { reach } from "./branches.js";
 import { chosen, names, plots } from "./curves.js";
@@ -23,7 +23,7 @@ const size = signal({ width: 0, height: 0 });
 const height = signal(0);
 
 /** Returns everything that a drawing needs; `whole` is for a picture with all rows. */
-export function scene(whole = false) {
+export function drawing(whole = false) {
   const rows = layout(filter.peek());
   const { width, height: seen } = size.peek();
   return {
@@ -55,7 +55,7 @@ function labelOfNow() {
 }
 
 function paint(canvas) {
-  const now = scene();
+  const now = drawing();
   height.value = now.layout.height;
   const context = scaled(canvas, now.width, now.height);
   if (now.width > now.column) drawTimeline(new CanvasSurface(context), now);
@@ -63,7 +63,7 @@ function paint(canvas) {
 
 /** Draws again what depends on the playhead, on the drawing that is there. */
 function paintPresent(canvas) {
-  const now = scene();
+  const now = drawing();
   if (canvas.width > 0 && now.width > now.column) drawPresent(new CanvasSurface(canvas.getContext("2d")), now);
 }
 
@@ -132,7 +132,7 @@ export function Stage() {
   // What is at the pointer is known until something else is there.
   useEffect(() => {
     at.value = null;
-  }, [present.value, span.value, scroll.value, way.value]);
+  }, [present.value, span.value, scroll.value, history.value]);
 
   function hover(event) {
     const there = event.buttons ? null : lookUp(event, stage.current);

@@ -33,7 +33,7 @@ export function CurveChoice() {
   return html`<div class="curve-choice">
     <p class="curve-tools">
       <input type="search" aria-label="Filter curves" placeholder="Filter" value=${sought.value} onInput=${(event) => (sought.value = event.currentTarget.value)} />
-      <button onClick=${plotUsual}>The usual ones</button>
+      <button onClick=${plotUsual}>Default curves</button>
     </p>
     ${[...groups].map(([title, curves]) => html`<${Group} key=${title} title=${title} curves=${curves} all=${groups.size === 1} />`)}
     ${groups.size === 0 ? html`<p class="empty">No curve has this in its name.</p>` : null}

@@ -8,7 +8,7 @@ import { session } from "../store.js";
 const before = new WeakMap(); // by event: the value that the change has replaced, as text
 
 /** Stores the values that users' changes replace, from event to event. */
-export class Former {
+export class ReplacedValues {
   #values = new Map();
   #buffers = new Map();
 

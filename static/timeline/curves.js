@@ -5,7 +5,7 @@
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
 import { isLeft, request } from "../server.js";
-import { alive, hurried, notify, running, session, state, way } from "../store.js";
+import { alive, hurried, notify, period, running, session, state, history } from "../store.js";
 import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { exactTime } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
@@ -211,10 +211,10 @@ let busy = false;
 let again = false;
 let newer = false; // whether the newest stretch was requested last, while the run is active
 
-/** What known data belongs to: the way that the run took to the present, and whether there is a world, as a program may create one later. */
-const history = () => `${way.peek()} ${Boolean(session.peek()?.world)}`;
+/** What known data belongs to: the history of the run, and whether there is a world, as a program may create one later. */
+const dataKey = () => `${history.peek()} ${Boolean(session.peek()?.world)}`;
 
-const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart count as the same [s]
+const near = () => period.peek() / 2; // moments that are no farther apart count as the same [s]
 
 function changed() {
   curvesVersion.value = curvesVersion.peek() + 1;
@@ -314,7 +314,7 @@ function needsEvents() {
 /** Returns the next stretch to request, {from, to, most, whole}; null if everything needed now is known. */
 function next(list) {
   const end = furthest.peek();
-  const tick = session.peek()?.period || 0.01;
+  const tick = period.peek();
   const bodies = list.some(isOfBody);
   const newest = (from, most) => ({ from, to: end, most, whole: !bodies || (end - from) / tick < most - 2 });
   if (known.until === null) return newest(0, OVERVIEW);
@@ -352,7 +352,7 @@ async function ask() {
 
 /** Requests missing data, if any; returns whether there may be more. Ignores data of another history. */
 async function askOnce() {
-  const asked = history();
+  const asked = dataKey();
   if (of !== asked) forget(asked);
   const isNew = named !== asked;
   const events = needsEvents();
@@ -367,7 +367,7 @@ async function askOnce() {
   Object.assign(stretch, { first: exactTime(Math.max(0, stretch.from - near())), last: exactTime(stretch.to + near()) });
   const seen = !events ? null : isNew ? 0 : ofEvents.peek().length;
   const answer = await request({ type: "curves", names: list, first: stretch.first, last: stretch.last, most: stretch.most, seen });
-  if (of !== asked || !asked.startsWith(`${way.peek()} `)) return true;
+  if (of !== asked || !asked.startsWith(`${history.peek()} `)) return true;
   const [bodies, more] = [true, false].map((isBody) => answer.names.filter(({ shape }) => (shape === "line") === isBody));
   if (isNew || bodies.length !== ofBodies.peek().length) ofBodies.value = bodies; // another world was added
   if (isNew || more.length > 0) ofEvents.value = isNew ? more : [...ofEvents.peek(), ...more];
@@ -394,9 +394,9 @@ effect(() => {
 const eventCount = computed(() => state.value?.events);
 
 effect(() => {
-  for (const one of [furthest, running, chosen, session, way, span, offered, eventCount]) one.value;
+  for (const one of [furthest, running, chosen, session, history, span, offered, eventCount]) one.value;
   if (alive.value) ask();
-  else if (of !== null && (!session.value || of !== history())) {
+  else if (of !== null && (!session.value || of !== dataKey())) {
     forget(null);
     named = null;
     for (const known of [ofBodies, ofEvents]) known.value = [];

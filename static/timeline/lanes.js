@@ -2,7 +2,8 @@
 
 import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
-import { Former } from "./commands.js";
+import { seriesColour } from "../parts/curve.js";
+import { ReplacedValues } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./lane_builders.js";
 
@@ -100,7 +101,7 @@ export class Lanes {
     this.lanes = new Map();
     this.tones = new Map(); // the names of colours by name
     this.asked = new Map();
-    this.former = new Former();
+    this.former = new ReplacedValues();
     this.learns = false; // whether utilities are learned
     this.now = 0;
     this.begin = null;
@@ -121,7 +122,7 @@ export class Lanes {
 
   /** Returns the colour of a name: different for each, as far as there are enough. */
   tone(name) {
-    if (!this.tones.has(name)) this.tones.set(name, `series-${(this.tones.size % 6) + 1}`);
+    if (!this.tones.has(name)) this.tones.set(name, seriesColour(this.tones.size));
     return this.tones.get(name);
   }
 

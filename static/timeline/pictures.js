@@ -8,19 +8,19 @@ import { pictureName, runName, saveFile, savePicture } from "../parts/picture.js
 import { session } from "../store.js";
 import { headingOf, plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
-import { scene } from "./canvas.js";
+import { drawing } from "./canvas.js";
 import { furthest } from "./seek.js";
 
 const [WIDE, HIGH, LEFT, RIGHT] = [900, 260, 46, 32]; // of a plot [px]
 const which = signal("");
 
 function ofTimeline() {
-  const all = scene(true);
+  const all = drawing(true);
   return { width: all.width, height: all.height, title: `Timeline: ${runName(session.peek())}`, draw: (surface) => drawTimeline(surface, all) };
 }
 
 function ofPlot(plot) {
-  const { span, end } = scene();
+  const { span, end } = drawing();
   const box = { x: LEFT, y: 22, width: WIDE - LEFT - RIGHT, height: HIGH - 42 };
   const draw = (surface) => {
     drawLegend(surface, LEFT, 8, WIDE - LEFT, plot.series);

@@ -49,7 +49,7 @@ export function resize(plot, height) {
   heights.value = { ...heights.newest(), [headingOf(plot)]: Math.round(Math.min(Math.max(height, HEIGHTS[0]), HEIGHTS[1])) };
 }
 
-/** Makes all plots taller by a number of names; lower if it is negative. */
+/** Makes all plots taller by a number of names; shorter if it is negative. */
 export function grow(by) {
   for (const plot of plots.peek()) resize(plot, heightOf(plot) + by * NAME);
 }

@@ -3,7 +3,7 @@
 import { computed, signal } from "../vendor/preact.js";
 import { exactTime, timeText } from "../parts/units.js";
 import { request, sendCommand } from "../server.js";
-import { alive, session, shownRun, state } from "../store.js";
+import { alive, period, shownRun, state } from "../store.js";
 
 /** The time to which the user is going [s]; null when the run is there. */
 export const wanted = signal(null);
@@ -25,14 +25,13 @@ let said = null; // the latest time sent to the run [s]
 
 /** Goes to a time [s]: the nearest tick that the run has reached. */
 export function seek(time) {
-  const period = session.peek()?.period || 0.01;
   // Ticks are whole microseconds; the end of a program need not be at one.
-  travel(exactTime(Math.round(time / period) * period), time);
+  travel(exactTime(Math.round(time / period.peek()) * period.peek()), time);
 }
 
 /** Goes on or back by a number of ticks, from where the run is going. */
 export function goTicks(ticks) {
-  seek(Math.max(0, destination.peek() + ticks * (session.peek()?.period || 0.01)));
+  seek(Math.max(0, destination.peek() + ticks * period.peek()));
 }
 
 /** Goes to a time that the run has reached [s]. `requested` is the time before it was rounded to a tick: if it is not before the newest

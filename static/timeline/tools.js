@@ -55,11 +55,11 @@ const canGo = () => alive.value;
 registered("To the beginning of the run", "Home", () => seek(0), canGo);
 const toNewest = registered("To its newest moment", "End", () => seek(furthest.peek()), canGo);
 registered("Five ticks back", "Shift+ArrowLeft", () => goTicks(-FEW), canGo);
-registered("Five ticks on", "Shift+ArrowRight", () => goTicks(FEW), canGo);
+registered("Five ticks forward", "Shift+ArrowRight", () => goTicks(FEW), canGo);
 const zoomIn = registered("Zoom in", "z", () => near(1 / STEP));
 const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
 registered("Make the plots taller", "h", () => grow(1), () => names.value.length > 0, noCurves);
-registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0, noCurves);
+registered("Make the plots shorter", "Shift+h", () => grow(-1), () => names.value.length > 0, noCurves);
 const showAll = registered("Fit to what happened in the run; again: to all of it", "f", fit);
 const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value, noCurves);
 const keep = command({

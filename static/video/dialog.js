@@ -5,6 +5,7 @@ import { dialog } from "../parts/dialog.js";
 import { pictureName, saveFile } from "../parts/picture.js";
 import { Problem } from "../parts/problem.js";
 import { plainTime, TIMES, timeOfText, timeText, timeUnit } from "../parts/units.js";
+import { counted } from "../parts/count.js";
 import { session } from "../store.js";
 import { furthest } from "../timeline/seek.js";
 import { encoderFor } from "./encoder.js";
@@ -75,7 +76,7 @@ export async function askForVideo() {
     if (Object.keys(problemsOf(texts.value, furthest.value)).length) return html`<p class="quiet">No video yet: see the times.</p>`;
     const count = countOf(stretchOf(texts.value));
     const { width, height } = sizeNow() ?? size;
-    return html`<p class="quiet number">${count} ${count === 1 ? "picture" : "pictures"}, ${timeText(count / RATE)} of video, ${width} × ${height} pixels, ${RATE} pictures a second</p>`;
+    return html`<p class="quiet number">${counted(count, "picture")}, ${timeText(count / RATE)} of video, ${width} × ${height} pixels, ${RATE} pictures a second</p>`;
   }
 
   function Progress() {

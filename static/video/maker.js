@@ -3,7 +3,7 @@
 
 import { exactTime } from "../parts/units.js";
 import { request, sendCommand } from "../server.js";
-import { listeners, session, state, way } from "../store.js";
+import { listeners, period, session, state, history } from "../store.js";
 import { furthest, requestThere } from "../timeline/seek.js";
 import { encoderFor, VideoFile } from "./encoder.js";
 
@@ -27,10 +27,10 @@ export function countOf({ begin, end, speed }) {
 
 /** Returns the time of the run that a picture shows [s]: that of the nearest tick which the run has reached. */
 function timeOf({ begin, end, speed }, number) {
-  const period = session.peek().period || 0.01;
-  const last = Math.floor(furthest.peek() / period + 1e-6);
-  const ticks = Math.round(Math.min(end, begin + (number * speed) / RATE) / period);
-  return exactTime(Math.min(ticks, last) * period);
+  const tick = period.peek();
+  const last = Math.floor(furthest.peek() / tick + 1e-6);
+  const ticks = Math.round(Math.min(end, begin + (number * speed) / RATE) / tick);
+  return exactTime(Math.min(ticks, last) * tick);
 }
 
 /** Returns the window of the 3D view, if it has drawn a scene. */
@@ -58,7 +58,7 @@ class Maker {
   constructor(stretch, stopped) {
     this.stretch = stretch;
     this.stopped = stopped;
-    this.way = way.peek();
+    this.history = history.peek();
     this.size = sizeNow();
     this.canvas = Object.assign(document.createElement("canvas"), this.size);
     this.before = state.peek().time;
@@ -77,7 +77,7 @@ class Maker {
   /** Throws an Error if the video cannot go on. */
   check() {
     this.stopped.throwIfAborted();
-    if (way.peek() !== this.way) throw goneElsewhere("the run was restarted or changed, or another one is shown");
+    if (history.peek() !== this.history) throw goneElsewhere("the run was restarted or changed, or another one is shown");
     if (this.isElsewhere) throw goneElsewhere("somebody else moved the run to another time");
     const size = sizeNow();
     if (size === null) throw new Error("the 3D view was closed");
@@ -157,7 +157,7 @@ export async function makeVideo(stretch, stopped, progress) {
   await requestThere({ type: "pause" });
   stopped.throwIfAborted();
   const maker = new Maker(stretch, stopped);
-  const goBack = () => way.peek() === maker.way && sendCommand({ type: "seek", time: maker.before });
+  const goBack = () => history.peek() === maker.history && sendCommand({ type: "seek", time: maker.before });
   addEventListener("pagehide", goBack);
   try {
     const made = await maker.make(progress);

@@ -511,7 +511,7 @@ def test_in_the_trace_a_change_by_hand_is_read_before_its_effect(pages: Callable
     say(page, type="step", ticks=12)
     shows(page, "#time", r"0\.12 s")
     page.get_by_label("Filter the trace").fill("goal")
-    page.locator("details.menu summary").click()
+    page.get_by_role("button", name="Events that are shown").click()
     page.get_by_role("button", name="All", exact=True).evaluate("one => one.click()")
     page.keyboard.press("Escape")
     say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:rest"})
@@ -532,10 +532,10 @@ def test_in_the_trace_a_change_by_hand_is_read_before_its_effect(pages: Callable
 
 
 TEXTS = """async ([changes, live, events]) => {
-  const [{ session }, { Former, commandText }, { batch }] = await Promise.all(
+  const [{ session }, { ReplacedValues, commandText }, { batch }] = await Promise.all(
     ["store.js", "timeline/commands.js", "vendor/preact.js"].map((name) => part(name)),
   );
-  const former = new Former();
+  const former = new ReplacedValues();
   const texts = [];
   batch(() => {
     session.value = { changes, live, parameters: {}, openings: [] };

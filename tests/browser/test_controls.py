@@ -47,6 +47,47 @@ def test_it_goes_to_a_time_that_is_typed(pages: Callable[..., Page]) -> None:
     shows(page, "#time", "0.30 s")
 
 
+READ = """async (texts) => {
+  const { read } = await part("parameters/values.js");
+  const bounds = { above: null, least: null, below: null, most: null };
+  return texts.map(([takes, text]) => read({ takes, optional: false, ...bounds }, text));
+}"""
+
+
+def test_a_comma_is_no_decimal_point(blank: Page) -> None:
+    hint = "must be a {}; the decimal point is '.', and nothing separates thousands"
+    assert blank.evaluate(READ, [["whole number", "1,000"], ["number", "0,5"], ["number", "0.5"], ["number", "x"]]) == [
+        {"problem": hint.format("whole number")},
+        {"problem": hint.format("number")},
+        {"value": 0.5},
+        {"problem": "must be a number"},
+    ]
+
+
+LATE = """async () => {
+  const { state } = await part("store.js");
+  document.querySelector("#scene iframe").contentWindow.scene = { drawnTime: () => 3601, choose() {} };
+  state.value = { ...state.value, status: "running", time: 3700, furthest: 3700, measured: 1 };
+}"""
+
+
+def test_a_3d_view_that_lags_shows_its_time_also_from_an_hour_on(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.evaluate(LATE)
+    expect(page.locator(".scene-lag")).to_have_text("3D view of 1:00:01.0")
+
+
+UNNAMED = """() => [...document.querySelectorAll("dialog [aria-labelledby]")].flatMap((one) =>
+  one.getAttribute("aria-labelledby").split(" ").filter((id) => !document.getElementById(id)))"""
+
+
+def test_each_table_of_keys_in_the_help_is_called_as_its_heading(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog").get_by_role("table", name="3D view")).to_be_visible()
+    assert page.evaluate(UNNAMED) == []
+
+
 @pytest.mark.slow
 def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
@@ -67,6 +108,13 @@ def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page.get_by_label("Pattern").fill("task:")
     page.get_by_role("button", name="Run until then").click()
     expect(problem).to_have_text("no value for slot 'task' in pattern 'task:'")
+    expect(page.get_by_label("Pattern")).to_have_attribute("aria-invalid", "true")
+    expect(buffer).to_have_attribute("aria-invalid", "false")
+    buffer.fill("gaol")
+    page.get_by_role("button", name="Run until then").click()
+    expect(problem).to_have_text("no buffer 'gaol'; did you mean 'goal'?")
+    expect(page.get_by_label("Pattern")).to_have_attribute("aria-invalid", "false")
+    expect(buffer).to_have_attribute("aria-invalid", "true")
     offered = buffer.evaluate("(input) => [...input.list.options].map(({ value }) => value)")
     assert offered == ["felt", "goal", "seen"]
     shows(page, "#time", "0.00 s")  # nothing has run

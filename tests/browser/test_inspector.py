@@ -402,7 +402,7 @@ def test_an_answer_is_shown_for_its_own_question_only(pages: Pages, workbench: S
     page.get_by_label("Search the memory").fill("nothing like it")
     expect(page.locator(".memory")).to_contain_text("No chunk has all of these words.")
     shows(page, "#status", "running")
-    expect(page.locator(".memory .tools")).to_contain_text(re.compile(r"as at \d\S* s"))
+    expect(page.locator(".memory .tools")).to_contain_text(re.compile(r"as it was at \d\S* s"))
     open_tab(page, "Productions")
     moment, why = page.get_by_label("Explain the time [s]"), page.locator("#why-text")
     moment.fill("0.05")

@@ -33,6 +33,24 @@ def search(page: Page, words: str) -> None:
     page.keyboard.insert_text(words)
 
 
+LISTED = """async () => {
+  const { permanent } = await part("commands.js");
+  const shown = [...document.querySelectorAll(".palette-text")].map((one) => one.textContent);
+  const isShown = ({ text }) => shown.some((one) => one.startsWith(text)); // what it would act on may follow
+  return permanent().filter((one) => one.ready() && !isShown(one)).map(({ text }) => text);
+}"""
+
+
+def test_without_a_search_the_commands_of_all_groups_are_listed(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="console")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.keyboard.press("Control+k")
+    expect(page.get_by_role("combobox", name="Search")).to_be_visible()
+    assert page.evaluate(LISTED) == ["All commands, and the manual"]
+    expect(page.get_by_role("group", name="Console")).to_be_visible()
+
+
 def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -> None:
     shows(page, "#status", "at its start")
     search(page, "step back")

@@ -27,6 +27,7 @@ from tests.workbench.html_replay.test_html_replay import ZOO, Waiting
 from workbench.backdrop import Shades
 from workbench.html_replay import make
 from workbench.html_replay.shapes import Shapes
+from workbench.shipped import static
 
 
 @pytest.fixture(scope="module")
@@ -172,10 +173,8 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
 def test_the_triangles_of_each_kind_of_shape_are_where_it_is(browser: Browser) -> None:
     model = mujoco.MjModel.from_xml_string(ZOO)
     told = Shapes(model)
-    folder = Path(make.__file__).parent
-    scripts = "".join((folder / name).read_text(encoding="utf-8").replace('"use strict";', "") for name in ("space.js", "solids.js"))
     with browser.new_page() as page:
-        page.add_script_tag(content=scripts)
+        page.add_script_tag(content=scripts_of("space", "solids"))
         for parts in told.parts[1]:
             solid: dict[str, Any] = page.evaluate(JOINED, [[parts], told.meshes])
             places, faces = np.array(solid["places"]).reshape(-1, 3), np.array(solid["faces"]).reshape(-1, 3)
@@ -200,16 +199,19 @@ def test_shadows_on_the_ground_are_those_of_the_workbench(browser: Browser) -> N
     mujoco.mj_kinematics(model, data)
     told = Shapes(model)
     expected = sorted(Shades(model, 0.0).quads(data))
-    folder = Path(make.__file__).parent
-    names = ("space.js", "solids.js", "shades.js")
-    scripts = "".join((folder / name).read_text(encoding="utf-8").replace('"use strict";', "") for name in names)
     poses = np.concatenate((data.xpos[told.bodies], data.xquat[told.bodies]), axis=1).tolist()
     with browser.new_page() as page:
-        page.add_script_tag(content=scripts)
+        page.add_script_tag(content=scripts_of("space", "solids", "shades"))
         found: list[list[float]] = sorted(page.evaluate(SHADES, [told.parts, told.meshes, poses]))
     assert len(found) == len(expected) > 4
     for one, other in zip(found, expected, strict=True):
         assert [*one[:2], *one[6:]] == pytest.approx([*other[:2], *other[6:]], abs=0.01)
+
+
+def scripts_of(*names: str) -> str:
+    """Returns scripts of the HTML replay, and the vectors of the page that they use."""
+    paths = (static() / "scene" / "space.js", *(Path(make.__file__).with_name(f"{name}.js") for name in names))
+    return "".join(path.read_text(encoding="utf-8").replace('"use strict";', "").replace("export ", "") for path in paths)
 
 
 SHADES = """([shapes, meshes, poses]) => {

@@ -122,6 +122,44 @@ Agent().run(1)
 """
 
 
+SEEDS = """async (seeds) => {
+  const { sorted } = await part("runs/table.js");
+  return sorted(seeds.map((seed, n) => ({ seed, made: n }))).map(({ seed }) => seed);
+}"""
+
+
+def test_seeds_are_sorted_as_numbers_though_the_largest_are_texts(blank: Page) -> None:
+    blank.evaluate("localStorage.setItem('actr3d.runs sorted', JSON.stringify({ by: 'seed', down: false }))")
+    blank.reload()
+    seeds = ["9223372036854775807", 10, "9007199254740993", 9, None, "9007199254740992"]
+    assert blank.evaluate(SEEDS, seeds) == [None, 9, 10, "9007199254740992", "9007199254740993", "9223372036854775807"]
+
+
+TWICE = """async () => {
+  const { cancelReplay, replayRun, replays } = await part("runs/actions.js");
+  const asked = [];
+  window.fetch = (path, { method, signal }) => {
+    if (method === "POST") asked.push(path);
+    return new Promise((_, reject) => signal.addEventListener("abort", () => reject(signal.reason)));
+  };
+  const all = [replayRun({ id: "one" }), replayRun({ id: "one" })];
+  cancelReplay("one");
+  await Promise.all(all);
+  return [asked, replays.value.one.text];
+}"""
+
+
+def test_a_replay_that_is_asked_for_twice_runs_once_and_can_be_cancelled(blank: Page) -> None:
+    assert blank.evaluate(TWICE) == [["/api/recordings/one/replay"], "cancelled"]
+
+
+NAME = """async (seed) => (await part("parts/picture.js")).pictureName({ model: "doorway.py", seed }, "timeline")"""
+
+
+def test_the_name_of_a_picture_has_no_seed_if_the_run_has_none(blank: Page) -> None:
+    assert [blank.evaluate(NAME, seed) for seed in (0, None)] == ["doorway seed 0 timeline", "doorway timeline"]
+
+
 @pytest.mark.slow
 def test_a_recording_that_is_run_again_shows_how_far_it_is(page: Page, workbench: Served, recordings: Path) -> None:
     (workbench.folder / "half.py").write_text(HALF, encoding="utf-8")

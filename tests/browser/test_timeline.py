@@ -98,7 +98,7 @@ def drawing(page: Page) -> dict[str, Any]:
     return page.evaluate(
         """async () => {
           const { drawTimeline } = await part("timeline/draw.js");
-          const { scene } = await part("timeline/canvas.js");
+          const { drawing } = await part("timeline/canvas.js");
           const { widthOf } = await part("parts/surface.js");
           const [labels, marks] = [[], []];
           const surface = { fill() {}, line() {}, within: (x, y, width, height, draw) => draw() };
@@ -106,7 +106,7 @@ def drawing(page: Page) -> dict[str, Any]:
           surface.text = (text, x, y, name, style = {}) => {
             if (style.anchor === "middle" && y < 20) labels.push([text, x - widthOf(text, style) / 2, x + widthOf(text, style) / 2]);
           };
-          drawTimeline(surface, scene());
+          drawTimeline(surface, drawing());
           const left = document.querySelector("#timeline").getBoundingClientRect().left;
           const label = document.querySelector(".timeline-now");
           const box = label.getBoundingClientRect();
@@ -450,9 +450,9 @@ LATEST = """async (count) => {
 }"""
 AROUND = """async () => {
   const { events, state } = await part("store.js");
-  const { scene } = await part("timeline/canvas.js");
+  const { drawing } = await part("timeline/canvas.js");
   const { list, first } = events.value;
-  return { first, last: first + list.length, now: state.value.events, known: scene().known };
+  return { first, last: first + list.length, now: state.value.events, known: drawing().known };
 }"""
 """The numbers of the events that a page has, and of those up to the present moment; until when the timeline shows what is known."""
 
@@ -1050,11 +1050,11 @@ Both().run(1)
 PLOT_ROW = """async (asked) => {
   const { title = "joints", ...others } = asked ?? {};
   const { drawTimeline } = await part("timeline/draw.js");
-  const { scene } = await part("timeline/canvas.js");
+  const { drawing } = await part("timeline/canvas.js");
   const texts = [];
   const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
   surface.text = (text, x, y) => texts.push([y, x, text]);
-  const now = { ...scene(), ...others };
+  const now = { ...drawing(), ...others };
   drawTimeline(surface, now);
   const { y, height, plot } = now.layout.rows.find(({ label }) => label === title);
   const top = y - now.scroll;
@@ -1066,13 +1066,13 @@ PLOT_ROW = """async (asked) => {
 
 COLOURS = """async () => {
   const { drawTimeline } = await part("timeline/draw.js");
-  const { scene } = await part("timeline/canvas.js");
+  const { drawing } = await part("timeline/canvas.js");
   const { plot, plots } = await part("timeline/curves.js");
   const drawn = () => {
     const lines = [];
     const surface = { fill() {}, text() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
     surface.line = (points, name) => lines.push(name);
-    drawTimeline(surface, scene());
+    drawTimeline(surface, drawing());
     const shown = plots.value.flatMap(({ series }) => series.map(({ name, colour }) => [name, colour]));
     return [Object.fromEntries(shown), [...new Set(shown.map(([, colour]) => colour))].every((colour) => lines.includes(colour))];
   };
@@ -1086,15 +1086,15 @@ COLOURS = """async () => {
 
 BANDS = """async () => {
   const { drawTimeline } = await part("timeline/draw.js");
-  const { scene } = await part("timeline/canvas.js");
-  const { rows } = scene(true).layout;
+  const { drawing } = await part("timeline/canvas.js");
+  const { rows } = drawing(true).layout;
   const found = {};
   const surface = { line() {}, text() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
   surface.fill = (x, y, width, height, name) => {
     const row = rows.find((row) => row.lane?.group === "productions" && y > row.y && y < row.y + row.height);
     if (row) found[row.label] = [...new Set([...(found[row.label] ?? []), name])];
   };
-  drawTimeline(surface, scene(true));
+  drawTimeline(surface, drawing(true));
   return found;
 }"""
 """The colours of the bands of each agent's productions."""
@@ -1270,11 +1270,11 @@ class Long(ACTR):
 Long().run(7200)
 """
 AXIS_TIMES = """async () => {
-  const [{ drawTimeline }, { scene }] = [await part("timeline/draw.js"), await part("timeline/canvas.js")];
+  const [{ drawTimeline }, { drawing }] = [await part("timeline/draw.js"), await part("timeline/canvas.js")];
   const texts = [];
   const known = { text: (text) => texts.push(text), within: (...values) => values.at(-1)() };
   const surface = new Proxy({}, { get: (_, name) => known[name] ?? (() => null) });
-  drawTimeline(surface, scene());
+  drawTimeline(surface, drawing());
   return texts.filter((text) => /^[0-9]/.test(text));
 }"""
 LOOK = """async (to) => {

@@ -30,7 +30,7 @@ from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
 from workbench import experiments
 from workbench.design_files import CheckRequest, StartRequest
-from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentProgress, ExperimentRunError
+from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentProgress, ExperimentRunError, processors
 from workbench.experiment_folder import ExperimentFolder
 from workbench.experiments import Experiments, RunningExperiment
 from workbench.readers import ReadingError
@@ -97,6 +97,7 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
     assert listed["bad_design.py:bad"]["model"] is None
     assert (listed["warren_whang_1987"]["file"], listed["warren_whang_1987"]["model"]) == (None, "aperture_passage.py")
     assert listed["slow/counting_design.py:counting"]["model"] == "slow/counter.py"
+    assert workbench.get("/api/designs").json()["processors"] == processors() <= (os.cpu_count() or 1)
     assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
@@ -108,6 +109,8 @@ def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
     facts = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": [3, 4]}, "participants": 5, "trials": 7}).json()
     assert (facts["trials"], facts["factors"], facts["groups"], facts["trials_a_cell"]) == (70, {"n": [3, 4]}, {"all": 5}, 7)
     assert [parameter["name"] for parameter in facts["parameters"]] == ["n", "mode"]
+    large = workbench.post("/api/designs/check", {"design": COUNTING, "texts": {"seed": [str(2**53 + 1)]}}).json()
+    assert (large["seed"], large["changed"]["seed"]) == (str(2**53 + 1), str(2**53 + 1)), "a browser would round the numbers"
     tried = workbench.post("/api/designs/check", {"design": "slow/counting_design.py:counting", "trial": True}).json()
     assert 0 < tried["seconds_a_trial"] < 60
     assert tried["model"] == "slow/counter.py"
@@ -241,7 +244,7 @@ def test_a_trial_is_recorded_and_opened(workbench: Served, finished: str) -> Non
     opened = workbench.post(f"/api/recordings/{name}/open")
     assert opened.status_code == 201, opened.text
     workbench.post(f"/api/sessions/{opened.json()['id']}/close")
-    assert workbench.post(f"/api/recordings/{name}/replay").json()["agrees"] is True
+    assert workbench.post(f"/api/recordings/{name}/replay").json()["verdict"] == "agrees"
     missing = workbench.post(f"/api/experiments/{finished}/trial", {"number": 24})
     assert (missing.status_code, "from 0 to 23" in missing.text) == (409, True)
 

@@ -85,3 +85,15 @@ def test_a_run_that_goes_another_way_before_its_failure_forgets_it(desk: Desk, t
     talk.say("run")
     state = talk.until("ended")
     assert state["furthest"] == state["time"]
+
+
+@pytest.mark.parametrize("source", [BUILT, PROGRAM], ids=["built", "program"])
+def test_a_run_that_has_failed_cannot_be_changed_or_continued(desk: Desk, tmp_path: Path, source: str) -> None:
+    talk = desk.begin(tmp_path, source.replace("DOES", "1 / 0").replace("TIME", "0.05"))
+    talk.say("run")
+    failed(talk, 0.15)
+    with pytest.raises(RefusedError, match="the run is over: go back to an earlier time, or restart it"):
+        talk.say("command", word="set_buffer", named={"buffer": "walker.goal", "chunk": "four"})
+    with pytest.raises(RefusedError, match="the run is over: go back to an earlier time, or restart it"):
+        talk.say("run")
+    failed(talk, 0.15)

@@ -11,7 +11,7 @@ import pytest
 
 from workbench import event_log
 from workbench.client_feed import Broadcast, Feed
-from workbench.event_log import EventLog
+from workbench.event_log import LatestEvents
 
 
 class Shown(Broadcast):
@@ -50,7 +50,7 @@ def told(feed: Feed, *work: Callable[[], object]) -> Any:
 
 
 def test_the_log_keeps_events_by_number() -> None:
-    log = EventLog()
+    log = LatestEvents()
     log.add(0, numbered(0, 1, 2))
     log.add(1, numbered(1, 2, 3))
     assert log.since(0) == (0, numbered(0, 1, 2, 3))
@@ -71,7 +71,7 @@ def test_the_log_keeps_events_by_number() -> None:
 
 def test_the_log_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(event_log, "MAX_EVENTS", 10)
-    log = EventLog()
+    log = LatestEvents()
     for number in range(25):
         log.add(number, numbered(number))
     assert log.since(0) == (15, numbered(*range(15, 25)))
@@ -163,7 +163,7 @@ def test_a_new_run_begins_with_its_own_events() -> None:
     shown.add(*range(5))
     feed = Feed(shown, "page 1")
     told(feed)
-    shown.run, shown.epoch, shown.log = 2, 2, EventLog()
+    shown.run, shown.epoch, shown.log = 2, 2, LatestEvents()
     shown.add(100)
     message = told(feed, feed.wake)
     assert (message["run"], message["events"]) == (2, {"first": 0, "list": [100], "cut": 0})

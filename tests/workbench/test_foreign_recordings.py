@@ -210,7 +210,7 @@ def test_code_from_elsewhere_is_run_only_if_the_user_says_so(desk: Desk, tmp_pat
     assert desk.listed(tmp_path)[0] == 1
     assert sessions.all() == []
     assert not foreign()
-    assert json.loads(post(desk, app, "/recordings/far/replay", trust=True).body)["agrees"] is True
+    assert json.loads(post(desk, app, "/recordings/far/replay", trust=True).body)["verdict"] == "agrees"
     assert foreign()
     assert post(desk, app, "/recordings/far/open", trust=True).status == 201
 

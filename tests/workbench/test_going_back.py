@@ -29,7 +29,7 @@ from tests.simulation.test_seek import COUNTED
 from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
 from workbench.page_commands.agents import Events, Explain, MemoryRows
-from workbench.page_commands.bodies import BodyState, Curves, Present, View
+from workbench.page_commands.bodies import BodyState, Curves, Present, ViewQuestion
 from workbench.protocol import COMMAND
 from workbench.worker.names import Top
 from workbench.worker.simulation_display import SimulationDisplay
@@ -101,10 +101,10 @@ def questions(shown: SimulationDisplay) -> list[Any]:
     bodies = [*shown.simulation.world.bodies]
     wanted: list[Any] = [Explain(), *(Explain(at=share * shown.simulation.time) for share in (0.3, 0.9)), Events(most=20_000)]
     wanted += [MemoryRows(memory=memory) for memory in memories]
-    wanted += [kind(body=body) for body in bodies for kind in (View, BodyState)]
+    wanted += [kind(body=body) for body in bodies for kind in (ViewQuestion, BodyState)]
     wanted += [Present(word="move", named={"object": name}) for name in shown.simulation.world.objects.names]
     known = {kind for kind in COMMANDS.values() if issubclass(kind, Question)}
-    assert {type(one) for one in wanted} | {MemoryRows, View, BodyState, Curves, Present} == known
+    assert {type(one) for one in wanted} | {MemoryRows, ViewQuestion, BodyState, Curves, Present} == known
     return wanted
 
 

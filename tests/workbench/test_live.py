@@ -218,7 +218,7 @@ def test_a_session_by_rest_alone(server: Served) -> None:
     assert (name, told["times"][0], told["times"][-1]) == ("walker_torso_yaw", 0.0, 6.8)
     assert 90 <= len(curve) == len(told["times"]) <= 100
     assert max(abs(angle) for angle in curve) > 40  # it turns its shoulders
-    assert server.post(f"/api/recordings/{recording}/replay").json()["agrees"] is True
+    assert server.post(f"/api/recordings/{recording}/replay").json()["verdict"] == "agrees"
 
 
 def test_two_recordings_are_compared(server: Served) -> None:

@@ -10,6 +10,7 @@ from actr3d.cli import main
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from tests.helpers.sessions import Desk
+from tests.workbench.test_replays import waits
 
 MODEL = """import sys
 from actr3d.actr import *
@@ -84,3 +85,5 @@ def test_a_run_that_is_left_says_so_and_agrees(text: str, desk: Desk, tmp_path: 
         comparison = replay(recorded)
     assert str(comparison).startswith("agrees up to the end of the recording: ")
     assert "; the recording says that the run was left at 0.1" in str(comparison)
+    path = talk.sessions.recordings.path(talk.facts["recording"])
+    assert desk.do(talk.sessions.replays.run(path, waits))["verdict"] == "agrees up to its end"

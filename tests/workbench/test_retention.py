@@ -344,13 +344,13 @@ def test_quick_restarts_leave_no_recordings_of_runs_that_never_began(desk: Desk,
 
 
 def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:
-    from workbench.event_log import EventLog
+    from workbench.event_log import LatestEvents
     from workbench.session import never_begun
 
     talk = desk.begin(tmp_path, "x = 1\n", record=True)
     state = talk.session.state
-    assert never_begun(state, EventLog())
-    assert not never_begun(None, EventLog())
-    log = EventLog()
+    assert never_begun(state, LatestEvents())
+    assert not never_begun(None, LatestEvents())
+    log = LatestEvents()
     log.add(0, [b'[0,"top","output",{"text":"hello"}]'])
     assert not never_begun(state, log)

@@ -158,7 +158,7 @@ def test_until_what_must_be_said(desk: Desk, tmp_path: Path) -> None:
         talk.say("until", pattern="x")
     talk.say("step", ticks=10)
     talk.until("paused", tick=10)
-    with pytest.raises(RefusedError, match=r"the time must be after the present one, .*; a click on the timeline goes back"):
+    with pytest.raises(RefusedError, match=r"time: must be after the present one, .*; a click on the timeline goes back"):
         talk.say("until", time=0.05)
 
 

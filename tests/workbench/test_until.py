@@ -19,15 +19,15 @@ COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
 @pytest.mark.parametrize(
     ("wanted", "told"),
     [
-        ({"production": "trun"}, "no production 'trun'; did you mean 'turn'?"),
+        ({"production": "trun"}, "production: no production 'trun'; did you mean 'turn'?"),
         ({"production": "zzz"}, "no production 'zzz'; there are: feel, judge, look, stop_behind, turn, walk_on"),
         ({"production": "turn-trun-1"}, "no production 'turn-trun-1'"),
-        ({"buffer": "walker.gaol", "pattern": "pass"}, "no buffer 'walker.gaol'; did you mean 'walker.goal'?"),
-        ({"buffer": "walker.goal", "pattern": "a:b c"}, "'c' without a slot's name after the named slot 'a' in pattern 'a:b c'"),
+        ({"buffer": "walker.gaol", "pattern": "pass"}, "buffer: no buffer 'walker.gaol'; did you mean 'walker.goal'?"),
+        ({"buffer": "walker.goal", "pattern": "a:b c"}, "pattern: 'c' without a slot's name after the named slot 'a' in pattern 'a:b c'"),
         ({"buffer": "walker.goal", "pattern": "a:"}, "no value for slot 'a' in pattern 'a:'"),
         ({"buffer": "gaol", "pattern": "pass"}, "no buffer 'gaol'; did you mean 'goal'?"),
         ({"buffer": "nosuch", "pattern": "pass"}, "no buffer 'nosuch'; there are: felt, goal, seen"),
-        ({"contact": "waker"}, "no body 'waker'; did you mean 'walker'?"),
+        ({"contact": "waker"}, "contact: no body 'waker'; did you mean 'walker'?"),
     ],
 )
 def test_what_there_is_not_is_refused_before_anything_runs(desk: Desk, tmp_path: Path, wanted: dict[str, Any], told: str) -> None:
@@ -107,6 +107,15 @@ def test_a_breakpoint_on_what_there_is_not_is_refused_and_one_that_an_edit_has_l
     assert talk.facts["breakpoints"] == ["turn", "turn_now"]
     talk.say("run")
     talk.wait(lambda: talk.state["reason"] == "breakpoint: turn_now fired")
+    assert talk.state["breakpoint"] == "turn_now"
+    time = talk.state["time"]
+    talk.say("seek", time=0)
+    talk.until("paused", time=0)
+    assert talk.state["breakpoint"] is None
+    talk.say("until", time=time + 0.01)
+    talk.wait(lambda: talk.state["breakpoint"] == "turn_now")
+    talk.say("command", word="set_buffer", named={"buffer": "walker.goal", "chunk": "other"})
+    talk.wait(lambda: talk.state["breakpoint"] is None)
 
 
 SLOTS = """
@@ -176,7 +185,7 @@ def test_from_an_hour_on_times_are_in_hours_minutes_and_seconds(desk: Desk, tmp_
     talk = desk.begin(tmp_path, IDLE)
     talk.say("until", time=4512.3)
     talk.wait(lambda: talk.state["reason"] == "at 1:15:12.30")
-    with pytest.raises(RefusedError, match=r"the time must be after the present one, 1:15:12\.30;"):
+    with pytest.raises(RefusedError, match=r"time: must be after the present one, 1:15:12\.30;"):
         talk.say("until", time=7)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import itertools
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,6 +25,7 @@ from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.loader import listing_of
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
+from workbench.run_facts import seed_of, source_of
 from workbench.scene_colours import palette
 from workbench.scene_framing import SceneFraming
 from workbench.shipped import static
@@ -77,9 +77,10 @@ def _read(folder: Path, name: str) -> str:
 
 
 def _scripts(folder: Path) -> str:
-    """Returns the scripts of the file as one: its own, and a module of the page that imports nothing."""
+    """Returns the scripts of the file as one: its own, and modules of the page that import nothing."""
     own = [folder / f"{name}.js" for name in ("space", "solids", "shades", "camera", "drawing", "events", "player")]
-    texts = [path.read_text(encoding="utf-8") for path in (own[0], static() / "parts" / "units.js", *own[1:])]
+    shared = [static() / "scene" / "space.js", static() / "parts" / "units.js"]
+    texts = [path.read_text(encoding="utf-8") for path in (own[0], *shared, *own[1:])]
     return "\n".join(re.sub("^export ", "", text, flags=re.MULTILINE) for text in texts)
 
 
@@ -87,7 +88,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     facts = recorded.facts
     file = facts.get("file", "")
     model = Path(file).name if models is None else ModelFolder(Path(models)).shown(file)
-    seed = facts.get("program_seed", facts.get("seed"))
+    seed = seed_of(facts)
     ended, branched = facts.get("ended"), facts.get("branched")
     branch = "" if branched is None else f" · branch at {time_text(branched, 2)}"
     return {
@@ -103,7 +104,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
 
 def _changes(recorded: Recorded, simulations: Iterable[RecordedSimulation]) -> ChangeTexts:
     facts = recorded.facts
-    listing = listing_of(facts.get("sources", {}).get(facts.get("file", ""), ""))
+    listing = listing_of(source_of(facts))
     walls = [(one.number, one.mj_model, one.facts["world"].get("walls", {})) for one in simulations]
     widths = {(number, name): width for number, model, gaps in walls for name, width in widths_in(model, gaps)}
     return ChangeTexts(listing, facts.get("parameters", {}), widths, value_text=_value, chunk_text=_chunk)
@@ -210,13 +211,11 @@ def _scene(simulation: RecordedSimulation, agents: Sequence[str], scenes: int) -
 
 def _stage(stage: SceneFraming, bodies: list[int]) -> dict[str, Any]:
     """Returns the part of the scene that is shown first, and the shape that the view follows: the body, or the next one after it."""
-    low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
-    corners = stage.corners if len(stage.corners) <= MAX_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
     follow = next((number for number, body in enumerate(bodies) if body >= stage.body), 0)
     return {
-        "corners": corners.round(3).tolist(),
-        "low": low.tolist(),
-        "high": high.tolist(),
+        "corners": stage.corners_within(MAX_STAGED).round(3).tolist(),
+        "low": stage.low.tolist(),
+        "high": stage.high.tolist(),
         "ahead": stage.ahead.tolist(),
         "follow": follow,
     }

@@ -1,5 +1,5 @@
 "use strict";
-// Matrices of 16 numbers, by columns, as WebGL takes them.
+// Matrices of 16 numbers, by columns, as WebGL takes them; vectors are those of the page (static/scene/space.js).
 
 function times(a, b) {
   const out = new Float32Array(16);
@@ -16,15 +16,6 @@ function perspective(fov, aspect, near, far) {
   const f = 1 / Math.tan(fov / 2);
   return new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0]);
 }
-
-const plus = (a, b, part) => a.map((x, n) => x + b[n] * part);
-const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const unit = (a) => {
-  const length = Math.hypot(...a) || 1;
-  return a.map((x) => x / length);
-};
 
 function lookAt(eye, target) {
   const back = unit(minus(eye, target));

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText, Name
 from workbench.language.python_answers import PythonAnswers
+from workbench.language.tokens import line_of
 
 _ASSIGNED = re.compile(r"\s*(?:=(?!=)|:)")
 
@@ -43,7 +44,7 @@ class ClassMembers:
         for agent in dict.fromkeys(related):
             own = next(iter(self._own(agent, new)), None)
             if own is not None and agent == owner:
-                return f"'{new}' already has a meaning in line {self._model.text.count(chr(10), 0, own) + 1}"
+                return f"'{new}' already has a meaning in line {line_of(self._model.text, own)}"
             if own is not None:
                 kind = "a method" if new in self._model.agents[agent].methods else "an attribute"
                 return f"'{new}' is {kind} of {agent} already"

@@ -49,7 +49,7 @@ _IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\(
 
 
 class _TextsOfModules(InferenceStateSameProcess):
-    """Gives jedi the modules of a text: compiled ones only if this process has imported them already, and the library's old names."""
+    """Passes to jedi the modules of a text: compiled ones only if this process has imported them already, and the library's old names."""
 
     def get_module_info(self, *, full_name: str, **more: Any) -> tuple[Any, bool | None]:
         """Returns the text of a module and whether it is a package; of an old name, the text of the names that the loader gives it."""

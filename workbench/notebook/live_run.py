@@ -119,7 +119,7 @@ class LiveRun(SimulationRun):
     def _look(self) -> None:
         """Notices that a cell has gone back and given the run another future."""
         if self._simulation.timeline.furthest < self._count:
-            self._controller.goes_another_way(self._events, "changed by a cell", ahead=True)
+            self._controller.continue_differently(self._events, "changed by a cell", ahead=True)
         self._note()
 
     def _note(self) -> None:

@@ -15,7 +15,7 @@ HEIGHT = 0.012
 
 
 @overlay("path", "path walked", shown=True)
-class Path(Overlay):
+class WalkedPaths(Overlay):
     """Shows the path of each body from the start of the run to the present, whether or not anyone watched, with a gap where it was moved by
     hand."""
 

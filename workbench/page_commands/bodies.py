@@ -33,7 +33,7 @@ def _found(run: ControlledRun, name: str | None) -> tuple[SimulationDisplay, Bod
 
 
 @page_command
-class View(Question):
+class ViewQuestion(Question):
     """Returns what a body's eye sees now, row by row, and the colours of the objects in the scene, by label."""
 
     type: Literal["view"] = "view"

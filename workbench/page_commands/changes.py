@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from workbench.worker.run_controller import RunController
 
 
-class Change(PageCommand):
+class RunChange(PageCommand):
     """Base of the commands that change the run itself.
 
     If the run has gone back, it continues differently from here. The part that lies ahead is kept as a recording of its own, a
@@ -24,7 +24,7 @@ class Change(PageCommand):
 
 
 @page_command
-class Set(Change):
+class Set(RunChange):
     """Changes a live parameter of the model in the running simulation."""
 
     type: Literal["set"] = "set"
@@ -37,7 +37,7 @@ class Set(Change):
 
 
 @page_command
-class Undo(Change):
+class Undo(RunChange):
     """Undoes the last change by hand up to now: the run goes to its moment, and continues without it and without later changes."""
 
     type: Literal["undo"] = "undo"
@@ -47,7 +47,7 @@ class Undo(Change):
 
 
 @page_command
-class SimulationCommand(Change):
+class SimulationCommand(RunChange):
     """Sends any command to the world, the agents or a body, as `Simulation.command` does."""
 
     type: Literal["command"] = "command"

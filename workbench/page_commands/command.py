@@ -58,8 +58,8 @@ class PageCommand(PageMessage):
     """Whether the sender is shown to others as the one who controls the session."""
     of_shown_run: ClassVar[bool] = False
     """Whether it is for the run on screen even if a newer run is being built; otherwise it is for the newest run."""
-    leaves_way: ClassVar[bool] = False
-    """Whether it ends the way of a run to another time; otherwise it is carried out once the run is there."""
+    cancels_seek: ClassVar[bool] = False
+    """Whether it cancels a seek that is in progress; otherwise it is carried out once the run is there."""
 
     async def submit(self, session: Session, who: str = "") -> Reply:
         """Does what the command is for; the reply holds the result or the error.

@@ -30,7 +30,7 @@ class Pause(PageCommand):
     """Pauses the run at the end of the current tick."""
 
     type: Literal["pause"] = "pause"
-    leaves_way: ClassVar[bool] = True
+    cancels_seek: ClassVar[bool] = True
 
     async def serve(self, session: Session) -> Reply:
         return await session.ask_all(self)
@@ -113,7 +113,7 @@ class Back(PageCommand):
 
     type: Literal["back"] = "back"
     of_shown_run: ClassVar[bool] = True
-    leaves_way: ClassVar[bool] = True
+    cancels_seek: ClassVar[bool] = True
     ticks: int = Field(default=1, ge=1, le=100_000)
 
     def carry_out(self, controller: RunController) -> None:
@@ -128,7 +128,7 @@ class Seek(PageCommand):
 
     type: Literal["seek"] = "seek"
     of_shown_run: ClassVar[bool] = True
-    leaves_way: ClassVar[bool] = True
+    cancels_seek: ClassVar[bool] = True
     time: Seconds
 
     def carry_out(self, controller: RunController) -> None:

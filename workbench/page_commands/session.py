@@ -38,10 +38,10 @@ class Stop(PageCommand):
     """Ends the worker process of the run, whatever it does; a run on its way to another time stays where it is instead, if it answers."""
 
     type: Literal["stop"] = "stop"
-    leaves_way: ClassVar[bool] = True
+    cancels_seek: ClassVar[bool] = True
 
     async def serve(self, session: Session) -> Reply:
-        if not await session.leave_way(self):
+        if not await session.cancel_seek(self):
             await session.stop()
         return Reply(id=0)
 

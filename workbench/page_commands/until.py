@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
@@ -34,7 +36,8 @@ class Until(PageCommand):
         """Checks, before the run continues, that each condition can occur.
 
         Raises:
-            Actr3dError: If a name is unknown, the pattern is invalid, it names a slot that no chunk can have, or the time has passed.
+            Actr3dError: If a name is unknown, the pattern is invalid, it names a slot that no chunk can have, or the time has passed; the
+                message begins with the name of the field.
         """
         from workbench.worker.slots import check_slots
 
@@ -42,19 +45,23 @@ class Until(PageCommand):
             raise Actr3dError("until: must name a time, a production, a buffer with a pattern, or a contact")
         run, start = controller.run, controller.channel.start
         names = run.names()
-        buffer = names.buffer(self.buffer) if self.buffer else None
+        with _of("buffer"):
+            buffer = names.buffer(self.buffer) if self.buffer else None
         if self.production:
-            names.check("production", self.production)
-        if self.contact is not None and not names.bodies:
-            raise Actr3dError("there is no body in this run that could touch anything")
-        if self.contact:
-            names.check("body", self.contact)
+            with _of("production"):
+                names.check("production", self.production)
+        with _of("contact"):
+            if self.contact is not None and not names.bodies:
+                raise Actr3dError("there is no body in this run that could touch anything")
+            if self.contact:
+                names.check("body", self.contact)
         is_fed = buffer is None or buffer in names.fed or buffer not in names.buffers
         sources = (start.source, *(text for _, text in start.helpers.values()))
-        check_slots(self.pattern or "", sources, names.modules if is_fed else (), start.folder)
+        with _of("pattern"):
+            check_slots(self.pattern or "", sources, names.modules if is_fed else (), start.folder)
         goal = None if self.time is None else round(self.time * MICROSECONDS)
         if goal is not None and goal <= run.clock:
-            raise Actr3dError(f"the time must be after the present one, {time_text(seconds(run.clock))}; a click on the timeline goes back")
+            raise Actr3dError(f"time: must be after the present one, {time_text(seconds(run.clock))}; a click on the timeline goes back")
         controller.go(
             goal=goal,
             goal_reason="" if self.time is None else f"at {time_text(self.time)}",
@@ -67,3 +74,12 @@ class Until(PageCommand):
         )
         controller.reason = controller.watch.pending
         controller.show()
+
+
+@contextmanager
+def _of(field: str) -> Generator[None]:
+    """Begins the message of an error inside the block with the name of a field."""
+    try:
+        yield
+    except Actr3dError as error:
+        raise Actr3dError(f"{field}: {error}") from None

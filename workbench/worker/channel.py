@@ -21,7 +21,7 @@ from typing import NoReturn
 import msgspec
 
 from actr3d.runner.before_exit import end_at_once
-from workbench.event_log import EventLog
+from workbench.event_log import LatestEvents
 from workbench.worker.messages import (
     LENGTH,
     LONGEST,
@@ -69,7 +69,7 @@ class Channel:
         self._end = end
         self.inbox: queue.SimpleQueue[CommandMessage | SetOverlays | Leave] = queue.SimpleQueue()
         self._messages: deque[Message] = deque()
-        self._events = EventLog()
+        self._events = LatestEvents()
         """The events that wait; if there are too many, the oldest are left out, which the numbers show."""
         self._state: State | None = None
         self._something = threading.Condition()

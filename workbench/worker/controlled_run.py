@@ -22,7 +22,7 @@ from workbench.worker.stop_conditions import Touches
 
 
 class LossError(SimulationError):
-    """A change is refused because what lies ahead of it would be lost; see `Change.drop`."""
+    """A change is refused because what lies ahead of it would be lost; see `RunChange.drop`."""
 
 
 class ControlledRun(ABC):
@@ -30,7 +30,7 @@ class ControlledRun(ABC):
 
     _recording: Recording | None = None
     _not_begun: RecordingError | None = None
-    """Why the recording could not be begun, which nobody needed until now; None if it could, or is given up."""
+    """Why the recording could not be started. None if it was started, or if the run goes on without one."""
     _event_curves: EventCurves | None = None
     """The curves of the events that have been taken; None until they are needed."""
     _chunk_curves: ChunkCurves | None = None
@@ -52,7 +52,7 @@ class ControlledRun(ABC):
 
     @property
     def target(self) -> int | None:
-        """The time to which the run is on its way [us]; None if it is not going to another time."""
+        """The time of the seek that is in progress [us]; None if there is none."""
         return None
 
     @property
@@ -194,7 +194,7 @@ class ControlledRun(ABC):
         return self._event_curves
 
     def repeat_recorded(self, known_run: KnownRun) -> None:
-        """Takes the events of a recorded run, which this run repeats, and their curves."""
+        """Stores the events of a recorded run, which this run repeats, and their curves."""
         self._repeated, self._event_curves = known_run, known_run.event_curves
 
     def cut_events(self, count: int) -> None:

@@ -102,4 +102,4 @@ class KeptBranch:
             done.append("the rest was lost")
         if is_unrecorded:
             done.append("what follows is not recorded")
-        self._controller.goes_another_way(events, "; ".join(done), ahead=self._ahead)
+        self._controller.continue_differently(events, "; ".join(done), ahead=self._ahead)

@@ -124,6 +124,8 @@ class State(Message, frozen=True, kw_only=True):
 
     status: Status
     reason: str
+    breakpoint: str | None = None
+    """The production at whose breakpoint the run is paused; None if it is not paused at one."""
     """Why the run is paused, has ended or failed."""
     tick: int
     time: float
@@ -131,7 +133,7 @@ class State(Message, frozen=True, kw_only=True):
     furthest: float
     """The furthest time that the run has reached [s]."""
     target: float | None = None
-    """The time to which the run is on its way [s]; None if it is not going to another time."""
+    """The time of the seek that is in progress [s]; None if there is none."""
     wanted: float | None
     measured: float | None
     """Measured speed as a multiple of real time; None if the run is not going on."""
@@ -231,7 +233,7 @@ class Reply(Message, frozen=True, kw_only=True):
     """The result as JSON."""
     error: str | None = None
     loses: bool = False
-    """Whether it was refused only because something would be lost; see `Change.drop`."""
+    """Whether it was refused only because something would be lost; see `RunChange.drop`."""
     line: int | None = None
     """The line of a text that was the reason to refuse a question about it."""
 

@@ -167,7 +167,7 @@ class ProgramRun(ControlledRun):
         self._failed = ""
         """The memory from which the last retrieval failed; empty if it did not, or if a production has fired since."""
         self._furthest: int = 0
-        self._rush: int | None = None
+        self._seek_to: int | None = None
         """The time up to which it runs without being shown or paused [us]."""
         self._again = False
         self._over = False
@@ -252,7 +252,7 @@ class ProgramRun(ControlledRun):
             self._controller.repeat_recorded(known_run)
 
     def _take_ahead(self, shown: SimulationDisplay) -> None:
-        """Gives a simulation what is recorded of its past and future."""
+        """Passes to a simulation what is recorded of its past and future."""
         number = shown.simulation.event_log.number
         if number is not None:
             shown.kept.states = self._ahead.pop(number, shown.kept.states)
@@ -372,9 +372,9 @@ class ProgramRun(ControlledRun):
     def _hold_at_start(self) -> None:
         """Waits before the program begins, unless it is being run again to reach a later moment."""
         controller = self._controller
-        if self._rush == 0 and self._undoing is None:
+        if self._seek_to == 0 and self._undoing is None:
             self._arrive()
-        if self._rush is None:
+        if self._seek_to is None:
             controller.show()
             controller.channel.flush()  # before the program does anything that could prevent it
             with suppress(_Again):
@@ -397,7 +397,7 @@ class ProgramRun(ControlledRun):
         return self._again or self._controller.leaving
 
     def _end(self, status: Any, reason: str) -> None:
-        self._rush = None
+        self._seek_to = None
         if self._undoing is not None:
             self._finish_undo(self._undoing)  # it did not get there: it differs from the first time
         self._over = True
@@ -444,7 +444,7 @@ class ProgramRun(ControlledRun):
 
     def _arrive(self) -> None:
         """Pauses the program, which has reached the time that the user wants; if the user undoes a change, completes that."""
-        self._rush = None
+        self._seek_to = None
         if self._undoing is None:
             self._controller.went_back()
         else:
@@ -468,17 +468,17 @@ class ProgramRun(ControlledRun):
         controller = self._controller
         while True:
             self._check_left()
-            if self._rush is not None:
+            if self._seek_to is not None:
                 # While a change is undone, the other changes of that moment are repeated before the program pauses.
-                if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
+                if to < self._seek_to or (to == self._seek_to and (not again or self._undoing is not None)):
                     self._clock = to
                     if self._goes_on():
                         return
                     continue
-                self._clock = self._rush
+                self._clock = self._seek_to
                 self._arrive()
             controller.attend()
-            if self._again or self._rush is not None:
+            if self._again or self._seek_to is not None:
                 continue
             if self._changed or (again and self._clock == to):
                 return
@@ -515,21 +515,21 @@ class ProgramRun(ControlledRun):
         """Waits until a simulation may continue."""
         controller = self._controller
         self._furthest = max(self._furthest, self._clock)
-        if self._rush is None:
+        if self._seek_to is None:
             controller.after_ticks()
         while True:
-            if self._rush is not None:
-                if self._clock < self._rush:
+            if self._seek_to is not None:
+                if self._clock < self._seek_to:
                     if self._goes_on():
                         return
                     continue
-                if self._undoing is not None and self._clock == self._rush:
+                if self._undoing is not None and self._clock == self._seek_to:
                     self._repeat_in(simulation)  # the changes of that moment that are not undone come before the one that is
                     if self._changes.made < len(self._changes.known):
                         return  # they are those of another simulation, which begins at that moment
                 self._arrive()
             controller.attend()
-            if self._rush is None and controller.pace(self._clock):
+            if self._seek_to is None and controller.pace(self._clock):
                 return
 
     def _repeat_in(self, simulation: Simulation) -> None:
@@ -577,7 +577,7 @@ class ProgramRun(ControlledRun):
 
     @property
     def target(self) -> int | None:
-        return self._rush
+        return self._seek_to
 
     @property
     def period(self) -> int:
@@ -608,8 +608,6 @@ class ProgramRun(ControlledRun):
         raise SimulationError(f"'{name}': the parameters of a program cannot change while it runs; restart it with the new value")
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        if self._controller.status in ENDED:
-            raise SimulationError("the run is over: go back to an earlier time, or restart it")
         make = self._change_now(word, values, named, body)
         before = len(self.trace)
         self.flush()
@@ -662,7 +660,7 @@ class ProgramRun(ControlledRun):
         self.flush()
         self._undoing = KeptBranch(self._controller, self._recording, moment, self._furthest, drop=drop)
         self._commands = changes.known[: known - 1]
-        self._set_off(moment)
+        self._begin_seek(moment)
         self._again = True
         raise _Again
 
@@ -680,24 +678,24 @@ class ProgramRun(ControlledRun):
         over = self._controller.status in ENDED
         if over and time == self._clock:
             return  # it is there
-        self._set_off(time)
+        self._begin_seek(time)
         if over or time < self._clock:
             self._again = True
             raise _Again
 
-    def _set_off(self, time: int) -> None:
+    def _begin_seek(self, time: int) -> None:
         """Starts to seek to another time [us]."""
-        self._rush = time
-        self._controller.set_off(f"going to {time_text(seconds(time), longest=seconds(self._furthest))}")
+        self._seek_to = time
+        self._controller.begin_seek(f"going to {time_text(seconds(time), longest=seconds(self._furthest))}")
 
     def _goes_on(self) -> bool:
-        """Carries out commands on the way to the time that a user wants; returns whether the program still goes there, and was not paused
+        """Carries out commands during a seek; returns whether the program still goes there, and was not paused
         or sent elsewhere."""
-        wanted = self._rush
-        self._controller.on_the_way(leave=self._undoing is None)
+        wanted = self._seek_to
+        self._controller.attend_seek(cancellable=self._undoing is None)
         if self._controller.status != "running":
-            self._rush = None
-        return self._rush == wanted
+            self._seek_to = None
+        return self._seek_to == wanted
 
     def flush(self) -> None:
         self._record(**{REACHED: seconds(self._furthest)})

@@ -29,7 +29,7 @@ ROOM = 10
 
 
 def replay_again(channel: Channel) -> None:
-    """Runs a recording again; replies whether every byte agrees (None if that is unknown), and with the text of the comparison."""
+    """Runs a recording again; replies with the verdict (see `Replays.run`) and the rest of the comparison's text, or why there is none."""
     path = Path(channel.start.path)
     sent = 0.0
 
@@ -42,9 +42,10 @@ def replay_again(channel: Channel) -> None:
     try:
         with Recorded(path) as recorded:
             comparison = replay(recorded, trust=True, progress=progress, within=Path(channel.start.to))  # the server has checked the trust
-        found: dict[str, Any] = {"agrees": comparison.difference is None, "text": shortened(str(comparison), MAX_TEXT)}
+        verdict = "differs" if comparison.difference is not None else "agrees" if comparison.to_its_end else "agrees up to its end"
+        found: dict[str, Any] = {"verdict": verdict, "text": shortened(str(comparison).partition(": ")[2], MAX_TEXT)}
     except Actr3dError as error:
-        found = {"agrees": None, "text": without_path(shortened(str(error), MAX_TEXT), path)}
+        found = {"verdict": None, "text": without_path(shortened(str(error), MAX_TEXT), path)}
     channel.post(Reply(id=0, result=to_json(found).encode()))
 
 

@@ -39,7 +39,7 @@ from workbench.worker.messages import (
 )
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
-from workbench.worker.stop_conditions import Watch
+from workbench.worker.stop_conditions import StopConditions
 from workbench.worker.truncation import bounded_json, event_json
 
 SHOWN = 1 / 30
@@ -64,7 +64,9 @@ class RunController:
         self.channel = channel
         self.status: Status = "running" if start.run else "paused"
         self.reason = "" if start.run else "at its start"
-        self.watch = Watch(breakpoints=frozenset(start.breakpoints))
+        self.watch = StopConditions(breakpoints=frozenset(start.breakpoints))
+        self._breakpoint: str | None = None
+        """The production at whose breakpoint the run was paused; None for another reason."""
         self.pacer = Pacer(start.factor)
         self.leaving = False
         """Whether the worker must end."""
@@ -90,9 +92,9 @@ class RunController:
         """Whether the run has something to do although it is paused."""
         self._shown = 0.0
         self._later: deque[CommandMessage] = deque()
-        """Commands that have arrived while the run is on its way to another time, and wait until it is there."""
+        """Commands that have arrived during a seek, and wait for its end."""
         self._unanswered: list[int] = []
-        """The commands with which the run has begun its way to another time: the next state answers them."""
+        """The commands that have begun a seek: the next state answers them."""
         self._overlays: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
@@ -162,25 +164,25 @@ class RunController:
         """Returns the next command; None if none arrives within the timeout [s]. Without a timeout, it waits."""
         return self._later.popleft() if self._later else self.channel.receive(timeout)
 
-    def set_off(self, reason: str) -> None:
-        """Begins the way of the run to another time; a short way is not shown."""
+    def begin_seek(self, reason: str) -> None:
+        """Begins a seek to another time; a short one is not shown."""
         self.status, self.reason = "running", reason
         self._shown = perf_counter()
 
-    def on_the_way(self, *, leave: bool) -> None:
-        """Sends at intervals how far the run has come on its way to another time, and carries out commands to leave the way.
+    def attend_seek(self, *, cancellable: bool) -> None:
+        """Sends at intervals how far a seek has come, and carries out commands that cancel it.
 
         Other commands wait until the run is there.
 
         Args:
-            leave: Whether users can leave the way.
+            cancellable: Whether users can cancel it.
         """
         if perf_counter() - self._shown < HURRIED:
             return
         self._seen = len(self.run.trace)  # stop conditions are for what happens after it
         self.show()
         while self.status == "running" and (message := self.channel.receive(0)) is not None:
-            if isinstance(message, CommandMessage) and not (leave and pickle.loads(message.command).leaves_way):
+            if isinstance(message, CommandMessage) and not (cancellable and pickle.loads(message.command).cancels_seek):
                 self._later.append(message)
             else:
                 self._hear(message)
@@ -210,7 +212,7 @@ class RunController:
 
     def pause(self, reason: str) -> None:
         """Pauses the run."""
-        self.status, self.reason = "paused", shortened(reason)
+        self.status, self.reason, self._breakpoint = "paused", shortened(reason), self.watch.met
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
@@ -231,10 +233,10 @@ class RunController:
     def went_back(self, reason: str = "went to this time") -> None:
         """Records that the run is now at another time, whose events were all known, and why."""
         self._seen = len(self.run.trace)
-        self.status, self.reason = "paused", reason
+        self.status, self.reason, self._breakpoint = "paused", reason, None
         self._halt()
 
-    def goes_another_way(self, events: int, changed: str, *, ahead: bool) -> None:
+    def continue_differently(self, events: int, changed: str, *, ahead: bool) -> None:
         """Informs the server that the known future after the present moment is no longer valid.
 
         Args:
@@ -244,7 +246,7 @@ class RunController:
         """
         with self._sending:
             if self.status == "paused":
-                self.reason = changed
+                self.reason, self._breakpoint = changed, None
             if ahead:
                 self._reached = 0
             if ahead or events < self._sent:
@@ -304,13 +306,12 @@ class RunController:
         """Continues the run.
 
         Args:
-            wanted: The conditions at which it stops; see `Watch`.
+            wanted: The conditions at which it stops; see `StopConditions`.
 
         Raises:
             Actr3dError: If the run is over.
         """
-        if self.status in ENDED:
-            raise Actr3dError("the run is over: go back to an earlier time, or restart it")
+        self._check_goes_on()
         self.watch = self.watch.renewed(**wanted)
         self._seen = len(self.run.trace)
         self.status, self.reason = "running", ""
@@ -335,11 +336,18 @@ class RunController:
         """Sends the running simulation a command; see `ControlledRun.change`.
 
         Raises:
+            Actr3dError: If the run is over.
             Exception: If it cannot be carried out.
         """
+        self._check_goes_on()
         self._reached = max(self._reached, self.run.clock)
         self.run.change(word, values, named or {}, body, drop=drop)
         self.show()
+
+    def _check_goes_on(self) -> None:
+        """Raises an error if the run is over at the present moment."""
+        if self.status in ENDED:
+            raise Actr3dError("the run is over: go back to an earlier time, or restart it")
 
     def undo(self, *, drop: bool) -> None:
         """Undoes the last change by hand up to now; see `ControlledRun.undo`.
@@ -383,6 +391,7 @@ class RunController:
         state = State(
             status=self.status,
             reason=self.reason,
+            breakpoint=self._breakpoint if self.status == "paused" else None,
             tick=run.clock // run.period,
             time=seconds(run.clock),
             furthest=seconds(max(run.clock, run.furthest)),

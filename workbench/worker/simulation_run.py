@@ -246,8 +246,6 @@ class SimulationRun(ControlledRun):
         return parameter.live
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        if self._controller.status == "ended":
-            raise SimulationError("the run is over: go back to an earlier time, or restart it")
         set_by = parameter_set_by(self._listing.parameters, word, values, named, body)
         if set_by is not None:
             parameter, value = set_by

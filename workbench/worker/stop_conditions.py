@@ -19,7 +19,7 @@ Touches = frozenset[Contact]
 
 
 @dataclass
-class Watch:
+class StopConditions:
     """Holds the conditions at which the run stops next, apart from users' commands."""
 
     goal: int | None = None
@@ -37,12 +37,14 @@ class Watch:
     contact: str | None = None
     """Stops when this body touches something; an empty text means any body."""
     breakpoints: frozenset[str] = frozenset()
+    met: str | None = None
+    """The production of `breakpoints` because of which the run stops."""
     touching: Touches = field(default_factory=Touches)
     """The contacts that existed at the last check, which do not count as new."""
 
-    def renewed(self, **wanted: Any) -> Watch:
+    def renewed(self, **wanted: Any) -> StopConditions:
         """Returns new stop conditions with the same breakpoints."""
-        return Watch(breakpoints=self.breakpoints, **wanted)
+        return StopConditions(breakpoints=self.breakpoints, **wanted)
 
     @property
     def of_events(self) -> bool:
@@ -83,6 +85,7 @@ class Watch:
             if event.kind == "fire":
                 name = event.data["production"]
                 if name in self.breakpoints:
+                    self.met = name
                     return f"breakpoint: {name} fired"
                 cycle = self.cycles > 0 and self.system in (None, event.source)
                 self.cycles -= cycle
