@@ -16,6 +16,7 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
+from actr3d.runner.before_exit import how_it_ended
 
 NICENESS = 10
 """The niceness of its processes, so that the server and the sessions have priority: 0 to 19."""
@@ -155,7 +156,7 @@ class ExperimentCommand:
         """Why it failed: the signal that ended it, or its last messages, which begin with the name of a wrong value if there is one."""
         code = self._process.returncode
         if code is not None and code < 0 and not self._interrupted:
-            return f"its process was ended by the signal {signal.Signals(-code).name}"
+            return f"its process {how_it_ended(code)}"
         text = OF_VALUE.sub(r"\1: ", "\n".join(self._messages).strip().removeprefix("error: "))
         return text if len(text) <= PART else f"… {text[-PART:]}"
 

@@ -418,7 +418,7 @@ def test_an_experiment_whose_process_is_killed_says_so_and_can_be_continued(work
     name = started(workbench, "slow/counting_design.py:counting")
     awaited(workbench, name, "running", done=1)
     os.kill(int((workbench.folder / ".workbench/experiments" / name / "lock").read_text("utf-8").split()[0]), signal.SIGKILL)
-    assert awaited(workbench, name, "failed")["problem"] == "its process was ended by the signal SIGKILL"
+    assert awaited(workbench, name, "failed")["problem"] == "its process was ended by SIGKILL"
     notes = workbench.folder / ".workbench/experiments" / name / "workbench.json"
     notes.write_text(json.dumps({**json.loads(notes.read_text("utf-8")), "problem": None}), "utf-8")
     assert awaited(workbench, name, "failed")["problem"]  # also where that cannot be noted, such as on a full disk

@@ -89,9 +89,9 @@ class Memory(WithParameters, Model):
         """The profile of this memory: its own, or its agent's."""
         return self._profile or PYTHON_ACTR
 
-    def _follow(self, profile: Profile | None) -> None:
+    def _follow(self, parent: Model | None) -> None:
         """Uses the agent's profile unless one was given, and registers to collect the chunks that leave buffers."""
-        super()._follow(profile)
+        super()._follow(parent)
         self._own_chunks(self.dm)
         if not self._latency_given:
             self.__dict__["latency"] = self.effective_profile.latency

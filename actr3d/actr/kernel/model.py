@@ -108,10 +108,9 @@ class Model(TreeNode):
         if parent is not None:
             ensure_converted(parent)
             own["sch"], own["log"], own["random"], own["parent"] = parent.sch, logs.dummy, parent.random, parent
-            self._follow(parent._profile)
         else:
             self._become_top()
-            self._follow(None)
+        self._follow(parent)
         self._convert_info(objects, methods)
         for name, obj in objects.items():
             if isinstance(obj, Model):
@@ -155,11 +154,11 @@ class Model(TreeNode):
         own["random"] = random.Random(seed)
         own["parent"] = None
 
-    def _follow(self, profile: Profile | None) -> None:
+    def _follow(self, parent: Model | None) -> None:
         """Uses the parent's profile unless the model has its own; subclasses may extend this."""
-        if self._profile is None:
-            self.__dict__["_profile"] = profile
-            if profile is not None and profile.whole_milliseconds:
+        if self._profile is None and parent is not None:
+            self.__dict__["_profile"] = parent._profile
+            if profile_of(parent).whole_milliseconds:
                 self.sch.round_ms = True
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
@@ -221,7 +220,7 @@ class Model(TreeNode):
                 self._merge_run(value)
             for part in subtree(value):
                 # Private, as everything that subclasses extend but productions must not see.
-                part._follow(part.parent._profile if part.parent is not None else None)
+                part._follow(part.parent)
         return True
 
     def _merge_run(self, other: Model) -> None:
