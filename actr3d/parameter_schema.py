@@ -109,7 +109,7 @@ class Parameter:
         elif (self.takes == "switch" and not isinstance(value, bool)) or (self.takes == "text" and not isinstance(value, str)):
             raise ConfigurationError(f"{self.name}: must be {self.domain()} (got {value!r})")
         elif value == "" and self.takes == "value" and self.known and not isinstance(self.default, (str, NoneType)):
-            raise ConfigurationError(f"{self.name}: must be a value such as {self.default!r} (got {value!r})")
+            raise ConfigurationError(f"{self.name}: must be a value such as {self.default!r}, not an empty text")
 
 
 def literal(text: str) -> Any:

@@ -23,8 +23,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.text import Text
 
 from actr3d.errors import DesignError, ExperimentError, SettingError, reason_of
-from actr3d.experiment.design import OWN_COLUMNS
-from actr3d.experiment.human_data import plain_text
+from actr3d.experiment.design import OWN_COLUMNS, plain_text
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import LOCK, SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
@@ -171,7 +170,11 @@ def run(
                 local_cluster(workers or _processors()) if cluster is None else nullcontext(cluster) as client,
                 _progress(out, "", total) as show,
             ):
-                run_experiment(experiment, store, client, show=show, stop=stop, checked=checked)
+                try:
+                    run_experiment(experiment, store, client, show=show, stop=stop, checked=checked)
+                except DesignError:
+                    out.line(f"corrected files need another folder: delete '{store.folder}', or give another one with --out")
+                    raise
             took, ran = time.monotonic() - begin, store.count - before
             out.line(f"{_trials(ran)} in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
         if writes:
@@ -434,7 +437,8 @@ def _opened(
     _check_versions(store.specification, any_version=any_version)
     there, now = store.specification, experiment.specification
     if different := experiment.differences_from(there):
-        same = f"choose another --out, or continue it unchanged: actr3d experiment {folder} --resume{' --any-version' * any_version}"
+        same = f"continue it unchanged: actr3d experiment {folder} --resume{' --any-version' * any_version}"
+        same = f"choose another --out, delete the folder, or {same}"
         raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
     # The files may be at another place now, and other files that the model reads beside them.
     return Experiment(replace(there, design=now.design, model=now.model)), store, True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -31,6 +32,8 @@ LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
 LARGEST = 2**63
 """Whole numbers must be below this, which tables and databases can store."""
+HUGE = 1e100
+"""The maximum size of a number: the squares of larger ones may be infinite."""
 FINEST = 1e-5
 """The least standard deviation of a distribution."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
@@ -254,6 +257,10 @@ class Design(Configuration):
             tidy[name] = [float(f"{one:.12g}") if type(one) is float else one for one in levels]
             if len(set(map(_key, tidy[name]))) < len(levels):
                 raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
+            texts = {plain_text(level): level for level in reversed(tidy[name])}
+            for level in tidy[name]:
+                if (first := texts[plain_text(level)]) is not level:
+                    raise DesignError(f"Design.factors['{name}']: has two levels with the same text: {first!r} and {level!r}", name)
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
             _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
@@ -590,6 +597,28 @@ def _check_names(names: Iterable[Any], where: str) -> None:
     for name in names:
         if not isinstance(name, str) or not name or not name.isprintable():
             raise DesignError(f"{where}: names must be non-empty strings of printable characters (got {name!r})", where.rpartition(".")[2])
+
+
+def plain_text(value: Any) -> str:
+    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`; a whole number is written without a point."""
+    match value:
+        case None | "":
+            return "none"
+        case float() if math.isnan(value):
+            return "none"
+        case float():
+            return text if float(text := f"{value:g}") == value else repr(value)
+        case list() | tuple() | dict():
+            return json.dumps(value)
+        case _:
+            return str(value)
+
+
+def text_cell(value: Any) -> str | None:
+    """Returns a value as it is in a column of texts; None for an empty cell, for which pandas has NaN."""
+    if value is None or isinstance(value, str):
+        return value
+    return None if isinstance(value, float) and math.isnan(value) else plain_text(value)
 
 
 def _key(value: Any) -> Any:

@@ -23,18 +23,19 @@ from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 from statistics import fmean, stdev
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import optuna
+from annotated_types import Ge, Le
 from numpy.typing import NDArray
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import ExperimentProgress, run_experiment
-from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
+from actr3d.experiment.design import DIGITS, HUGE, OWN_COLUMNS, OWN_NUMBERS, Design, Measured, plain_text
 from actr3d.experiment.emulator import STEPS, Emulator
-from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels, plain_text
+from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r
 from actr3d.experiment.specification import Experiment, specify
@@ -73,9 +74,9 @@ class Range(Configuration):
     """The range in which a parameter is fitted."""
 
     name: str
-    low: float
+    low: Annotated[float, Ge(-HUGE)]
     """Its least value; rounded up to a value that can be tried, with 6 decimals."""
-    high: float
+    high: Annotated[float, Le(HUGE)]
     """Its greatest value; rounded down likewise."""
 
     def __post_init__(self) -> None:

@@ -32,7 +32,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -40,6 +39,7 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean, reason_of
+from actr3d.experiment.design import HUGE, plain_text
 from actr3d.parameter_schema import Parameter
 
 FOLDER = Path(__file__).parent / "human"
@@ -48,8 +48,6 @@ SHOWN = 20
 """The maximum number of errors that are named at a time."""
 MAX_BYTES = 256 * 1024 * 1024
 """The maximum size of a file: some two million trials."""
-HUGE = 1e100
-"""The maximum size of a number: the squares of larger ones may be infinite."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
 """The columns of published means that are not factors."""
 RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
@@ -77,21 +75,6 @@ def absent_levels(written: Sequence[Any], levels: Sequence[Any]) -> list[str]:
         return []
     there = set(map(plain_text, levels))
     return [text for text in map(plain_text, written) if text not in there]
-
-
-def plain_text(value: Any) -> str:
-    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`; a whole number is written without a point."""
-    match value:
-        case None | "":
-            return "none"
-        case float() if math.isnan(value):
-            return "none"
-        case float():
-            return text if float(text := f"{value:g}") == value else repr(value)
-        case list() | tuple() | dict():
-            return json.dumps(value)
-        case _:
-            return str(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,20 +160,21 @@ class HumanFile:
         self._errors: list[str] = []
         self._notes: list[str] = []
         self._lines: list[tuple[int, list[str]]] = []
-        reader = csv.reader(io.StringIO(_text(path)))
+        reader, end = csv.reader(io.StringIO(_text(path))), 0
         try:
             for cells in reader:
+                line, end = end + 1, reader.line_num  # a cell in quotes may have several lines
                 if cells and cells[0].lstrip().startswith("#"):
                     if self._lines and 1 < len(cells) == len(self._lines[0][1]):
-                        where = f"{path}:{reader.line_num}"
+                        where = f"{path}:{line}"
                         self._errors.append(
                             f"{where}: begins with '#', as a note does: rename {cells[0]!r}, or write notes above the first line"
                         )
                     self._notes.append(",".join(cells).strip().lstrip("#").strip())
                 elif any(cell.strip() for cell in cells):
-                    self._lines.append((reader.line_num, [cell.strip() for cell in cells]))
+                    self._lines.append((line, [cell.strip() for cell in cells]))
         except csv.Error as error:
-            raise ExperimentError(f"{path}:{reader.line_num}: is not CSV ({error})") from None
+            raise ExperimentError(f"{path}:{end + 1}: is not CSV ({error})") from None
 
     @property
     def columns(self) -> Sequence[str]:
@@ -299,7 +283,8 @@ class HumanFile:
 
     def _row(self, line: int, head: list[str], cells: list[str], published: bool) -> dict[str, Any] | None:
         if len(cells) != len(head):
-            self._errors.append(f"{self._path}:{line}: must have {len(head)} cells, as the first line has (got {len(cells)})")
+            hint = "; a quote that begins in it may not be closed" if any("\n" in cell for cell in cells) else ""
+            self._errors.append(f"{self._path}:{line}: must have {len(head)} cells, as the first line has (got {len(cells)}){hint}")
             return None
         given, before = dict(zip(head, cells, strict=True)), len(self._errors)
         row: dict[str, Any] = {"group": self._one_of(line, "group", given.get("group", ""), self._schema.groups)}

@@ -329,10 +329,13 @@ def _file_of(name: str) -> tuple[Path, str]:
     if colon and file and chosen.isidentifier() and Path(file).exists():
         return Path(file), chosen
     path = Path(name)
+    if not name:
+        raise ExperimentError("the name of the design must not be empty")
     if path.is_dir():
         raise ExperimentError(f"'{name}' is a folder; name a design, or a file with one")
     if not path.exists():
-        raise ExperimentError(f"no design or file '{name}'{alternatives(name, known, 'the library has:', path.parent.glob('*.py'))}")
+        hint = alternatives(name, known, "the library has:", path.parent.glob("*.py"))
+        raise ExperimentError(f"no design, file or folder '{name}'{hint}")
     return path, ""
 
 

@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from actr3d.errors import ExperimentError, reason_of
-from actr3d.experiment.human_data import plain_text
+from actr3d.experiment.design import text_cell
 from actr3d.experiment.store import ROWS_AT_ONCE, Column, Store
 from actr3d.replacing import replacing
 
@@ -53,15 +53,12 @@ def _write_columns(path: Path, columns: tuple[Column, ...]) -> None:
 
 
 def _write_csv(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[str, Any]]) -> None:
+    names = [column.name for column in columns]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow([column.name for column in columns])
-        writer.writerows([_cell(row.get(column.name), column.type) for column in columns] for row in rows)
-
-
-def _cell(value: Any, kind: str) -> Any:
-    """Returns a value as it is in a table: in a column of texts, every value is one."""
-    return value if kind != "text" or value is None or isinstance(value, str) else plain_text(value)
+        writer.writerow(names)
+        of_text = {column.name for column in columns if column.type == "text"}
+        writer.writerows([text_cell(row.get(name)) if name in of_text else row.get(name) for name in names] for row in rows)
 
 
 def _write_parquet(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[str, Any]]) -> None:
@@ -83,7 +80,7 @@ def _array(arrow: Any, arrow_type: Any, kind: str, values: list[Any]) -> Any:
         return arrow.nulls(len(values))
     if kind == "text":
         texts = arrow.lib.StringBuilder()
-        texts.append_values([_cell(value, kind) for value in values])
+        texts.append_values(list(map(text_cell, values)))
         return texts.finish()
     there = np.packbits(np.array([value is not None for value in values], bool), bitorder="little")
     plain = [0 if value is None else value for value in values]

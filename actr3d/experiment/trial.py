@@ -16,7 +16,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import DesignError, ExperimentError, did_you_mean, followed
-from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_python
+from actr3d.experiment.design import HUGE, LARGEST, OWN_COLUMNS, Measured, Trial, as_python
 from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
 from actr3d.output import printing_nothing
 from actr3d.parameter_schema import parameters_of
@@ -54,8 +54,13 @@ def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - every error of a model belongs in its row
-        end = NO_MEASURE if isinstance(error, MissingMeasureError) else WRONG_MEASURE if isinstance(error, DesignError) else "error"
-        return {"end": end, "error": traceback_report(error).text.strip()}
+        return failed_row(error)
+
+
+def failed_row(error: BaseException) -> Row:
+    """Returns `end` and `error` of a trial that failed."""
+    end = NO_MEASURE if isinstance(error, MissingMeasureError) else WRONG_MEASURE if isinstance(error, DesignError) else "error"
+    return {"end": end, "error": escape_surrogates(traceback_report(error).text.strip())}
 
 
 def record_trial(experiment: Experiment, trial: Trial, file: Path | str, helpers: HelperTexts) -> Any:
@@ -173,6 +178,8 @@ def _plain(name: str, value: Any, measure: Measured) -> Any:
         ExperimentError: If it cannot be stored.
     """
     value = as_python(value)
+    if isinstance(value, float) and HUGE < abs(value) < math.inf:
+        raise ExperimentError(f"measure '{name}': must be from {-HUGE:g} to {HUGE:g} (got {value!r})")
     if isinstance(value, int) and not -LARGEST <= value < LARGEST:
         raise ExperimentError(
             f"measure '{name}': must be a whole number of at most 64 bits, or a float (got one of {value.bit_length()} bits)"

@@ -24,7 +24,7 @@ from typing import Any, BinaryIO
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification
-from actr3d.experiment.trial import Row, run_trial
+from actr3d.experiment.trial import Row, failed_row, run_trial
 from actr3d.runner.before_exit import how_it_ended
 from actr3d.runner.traceback_report import traceback_report
 
@@ -273,7 +273,7 @@ def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> tuple[
         trial = experiment.design.trial(number)
         return trial.columns, run_trial(experiment, trial, helpers)
     except Exception as error:  # noqa: BLE001 - every error of a trial belongs in its row
-        return columns, {"end": "error", "error": traceback_report(error).text.strip()}
+        return columns, {**failed_row(error), "end": "error"}
 
 
 class _Questions:

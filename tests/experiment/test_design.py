@@ -165,6 +165,8 @@ INVALID: list[tuple[dict[str, Any], str]] = [
     ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
     ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
     ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
+    ({"factors": {"a": ["1", 1]}}, r"Design\.factors\['a'\]: has two levels with the same text: '1' and 1"),
+    ({"factors": {"a": [None, "none"]}}, r"Design\.factors\['a'\]: has two levels with the same text: None and 'none'"),
     ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
     ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
     ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
@@ -487,7 +489,7 @@ def test_a_syntax_error_in_the_model_is_named_with_file_and_line(tmp_path: Path)
 
 
 def test_an_unknown_name_is_refused() -> None:
-    with pytest.raises(ExperimentError, match=r"no design or file 'warren_whang'; did you mean 'warren_whang_1987'"):
+    with pytest.raises(ExperimentError, match=r"no design, file or folder 'warren_whang'; did you mean 'warren_whang_1987'"):
         specify("warren_whang")
 
 

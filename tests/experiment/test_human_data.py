@@ -154,6 +154,8 @@ def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "people.csv").write_text(f'participant\n"{"x" * 200_000}', encoding="utf-8")
     with pytest.raises(ExperimentError, match=r"people\.csv:2: is not CSV \(field larger than field limit"):
         load_target(str(tmp_path / "people.csv"), specify("fan_effect"))
+    with pytest.raises(ExperimentError, match=r"csv:3: must have 5 cells, .* \(got 1\); a quote that begins in it may not"):
+        read(tmp_path, f'{HEAD}1,small,0.4,fast,50\n"2,small,0.4\n3,small\n')
     with pytest.raises(ExperimentError, match="No such file"):
         HumanFile(tmp_path / "nobody.csv").read(SCHEMA)
 

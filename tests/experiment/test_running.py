@@ -491,16 +491,16 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         (
             [str(path), "--out", out, "--resume", "--trials", "3"],
             1,
-            "is another experiment: --trials: 4 there, 3 now; choose another --out",
+            "is another experiment: --trials: 4 there, 3 now; choose another --out, delete the folder, or continue",
         ),
         ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
         ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
-        (["nothing"], 1, "no design or file 'nothing'"),
+        (["nothing"], 1, "no design, file or folder 'nothing'"),
         ([f"{path.parent}/countin_design.py"], 1, f"countin_design.py'; did you mean '{path}'? The library has: "),
         ([out, "--check"], 1, f"'{out}' is a folder; name a design, or a file with one"),
         ([str(path), "--any-version"], 2, "--any-version: is for an experiment that is continued; add --resume"),
         ([str(path), "--set", "m=3"], 2, "--set m: Design: the model has no parameter 'm'"),
-        ([str(path), "--set", "n="], 2, "--set n: Design, all 1: n: must be a value such as 3 (got '')"),
+        ([str(path), "--set", "n="], 2, "--set n: Design, all 1: n: must be a value such as 3, not an empty text"),
         ([str(path), "--set", "m"], 2, "a parameter is set by name=value (got 'm')"),
     ):
         assert main(["experiment", *arguments]) == code
@@ -527,9 +527,8 @@ def test_an_experiment_is_continued_where_its_files_were_moved_to(
     monkeypatch.chdir(tmp_path)
     again = ["experiment", "second/counting_design.py", "--out", "second/out", "--resume", "--workers", "1"]
     assert main([*again, "--set", "n=1,2"]) == 1
-    assert "'second/out' is another experiment: n: [1, 2, 5] there, [1, 2] now; choose another --out, or continue it unchanged: " in (
-        capsys.readouterr().err
-    )
+    says = "'second/out' is another experiment: n: [1, 2, 5] there, [1, 2] now; choose another --out, delete the folder, or continue it"
+    assert says in capsys.readouterr().err
     assert main(again) == 0
     with Store("second/out") as store:
         assert [(row["luck"], row["error"]) for row in store.rows()] == [(1, None)] * 3

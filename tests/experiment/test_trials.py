@@ -722,6 +722,22 @@ def test_measures_that_no_table_can_hold_are_failures(tmp_path: Path, end: str, 
     assert says in rows[2]["error"]
 
 
+def test_an_error_with_characters_that_cannot_be_stored_is_a_row_and_the_table_is_written(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model=f"{COUNTER}if n == 1:\n    raise ValueError('no file \\udcff')\n", participants=1, trials=1)
+    rows = rows_of(path)
+    assert [row["end"] for row in rows] == ["error", "end", "end"]
+    with Store.create(tmp_path / "out", specify(str(path)).specification) as store:
+        store.add([Finished(row={"trial": n, **row}, wall_s=1, worker="0") for n, row in enumerate(rows)], "v")
+        export(store)
+    assert "ValueError: no file \\udcff" in (tmp_path / "out" / "trials.csv").read_text(encoding="utf-8")
+
+
+def test_a_measure_that_is_too_large_for_statistics_is_a_failure(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model=f"{COUNTER}rt = 1e200\n", factors='{"n": [1]}', participants=1, trials=1)
+    (row,) = rows_of(path)
+    assert row["error"] == "error: measure 'rt': must be from -1e+100 to 1e+100 (got 1e+200)"
+
+
 def test_a_model_that_forks_answers_once(tmp_path: Path) -> None:
     fork = "import os, time\nif os.fork() == 0:\n    time.sleep(0.05)\n    rt = -1\nelse:\n    rt = n\n"
     path = write_experiment(tmp_path, model=f"{COUNTER}{fork}", participants=1, trials=6)

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.design import OWN_COLUMNS, Design
-from actr3d.experiment.human_data import absent_levels, factor_name, plain_levels, plain_text
+from actr3d.experiment.design import OWN_COLUMNS, Design, plain_text, text_cell
+from actr3d.experiment.human_data import absent_levels, factor_name, plain_levels
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.store import ROWS_AT_ONCE, UNITS, Column, Store, summary
@@ -144,7 +144,7 @@ def read_results(folder: Path | str) -> Results:
     failures = frame.loc[failed, about].reset_index(drop=True)
     if not len(rows):
         first = summary(str(failures.sort_values("trial")["error"].iloc[0]))
-        raise ExperimentError(f"'{folder}': all {len(failures):,} trials failed; the first one with: {first}")
+        raise ExperimentError(f"'{folder}': every finished trial failed ({len(failures):,}); the first one with: {first}")
     of_design = {*design.known_columns, *OWN_COLUMNS, *renamed.values()}
     kinds = {name: columns[name].type for name in rows if name in columns and name not in of_design}
     return Results(
@@ -185,11 +185,14 @@ def _frame(store: Store, texts: Sequence[str]) -> Any:
     """
     pd, rows = pandas(), store.rows()
     kinds = {column.name: "float64" if column.type in NUMBERS and column.name not in texts else "object" for column in store.columns}
+    of_text = [column.name for column in store.columns if column.type == "text" and column.name not in (*texts, *LEFT_OUT)]
     pieces: list[Any] = []
     while found := list(islice(rows, ROWS_AT_ONCE)):  # in pieces, which need less memory than all rows as dictionaries
         piece = pd.DataFrame.from_records(found, exclude=[name for name in LEFT_OUT if name in found[0]])
         piece = piece.astype({name: kinds[name] for name in piece})
         for name in texts:
-            piece[name] = pd.Series([plain_text(value) for value in piece[name]], dtype="object")
+            piece[name] = pd.Series(list(map(plain_text, piece[name])), dtype="object")
+        for name in of_text:
+            piece[name] = pd.Series(list(map(text_cell, piece[name])), dtype="object")
         pieces.append(piece)
     return pd.concat(pieces, ignore_index=True) if pieces else None

@@ -29,9 +29,8 @@ from actr3d.experiment.aperture.analysis import (
     with_greatest_angles,
 )
 from actr3d.experiment.aperture.constraints import Findings
-from actr3d.experiment.design import Trial
+from actr3d.experiment.design import Trial, plain_text
 from actr3d.experiment.fit import load_target
-from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
@@ -670,6 +669,21 @@ def test_levels_of_several_types_are_the_same_texts_in_both_tables_and_in_data_o
     assert [plain_text(one.conditions["word"]) for one in found] == [plain_text(level) for level in levels_of_design]
 
 
+def test_dollar_signs_in_names_are_drawn_as_they_are() -> None:
+    curve = Curve(label=r"$\frac{$", source="model", look="model", x=[1, 2], y=[1, 2])
+    drawn = svg(curves_figure([Pane(title="costs $5 or $6", curves=[curve])], "x", "y"))
+    assert "costs $5 or $6" in drawn
+    assert r"$\frac{$" in drawn
+
+
+def test_trials_are_counted_by_the_texts_of_a_measure(tmp_path: Path) -> None:
+    def mixed(trial: Trial) -> dict[str, Any]:
+        return {"rt": [1, True, "a"][trial.number % 3], "luck": 0.5}
+
+    results = read_results(store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), mixed))
+    assert results.rows["rt"].value_counts().to_dict() == {"1": 4, "True": 4, "a": 4}
+
+
 def test_a_walker_that_has_not_judged_neither_passes_nor_does_not(tmp_path: Path) -> None:
     def judge(trial: Trial) -> dict[str, Any]:
         if trial.repetition == 1 or trial.columns["participant"] == "small 1":
@@ -709,7 +723,7 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     assert f"error: '{empty}': no trial has finished yet" in capsys.readouterr().err
     failed = store_rows(tmp_path / "failed", str(path), lambda _: {"error": "ValueError: never"})
     assert main(["report", str(failed)]) == 1
-    assert "all 12 trials failed; the first one with: ValueError: never" in capsys.readouterr().err
+    assert "every finished trial failed (12); the first one with: ValueError: never" in capsys.readouterr().err
     error = "Traceback (most recent call last):\nValueError: never\nhint: the model had asked its memory"
     noted = store_rows(tmp_path / "noted", str(path), lambda _: {"error": error})
     assert main(["report", str(noted)]) == 1
