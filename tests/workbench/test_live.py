@@ -232,7 +232,7 @@ def test_two_recordings_are_compared(server: Served) -> None:
     assert told["parameters"] == {"width": [0.5, 0.9]}
     first, second = told["difference"]["events"]
     assert first[0] == second[0] == round(told["difference"]["time"] * 1e6)
-    assert told["difference"]["number"] == told["same_events"] > 5
+    assert told["same_events"] > 5
     assert told["changed"] == [{}, {}]
     assert told["units"]["width"] == "m"
     same = server.post("/api/compare", {"first": names[0], "second": names[0]}).json()

@@ -149,7 +149,7 @@ def test_a_recording_of_a_program_counts_its_time_in_the_same_way(desk: Desk, tm
     assert compared["changed"] == [{}, {}]  # by users
     difference = compared["difference"]
     assert difference["time"] >= 0.1
-    assert difference["events"][0][0] == events[difference["number"]][0]
+    assert difference["events"][0][0] == events[compared["same_events"]][0]
 
 
 @pytest.mark.parametrize("state", [b"short", pack("d", float("nan")), pack("d", float("inf"))])
