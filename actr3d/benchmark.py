@@ -1,4 +1,4 @@
-"""Measured figures with the limits that they must meet, and the registry of the benchmarks that measure them."""
+"""Measurements with the limits that they must meet, and the registry of the benchmarks that make them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from actr3d.registry import Registry
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """One measured figure, and the limit that it must meet."""
+    """One measured value, and the limit that it must meet."""
 
     name: str
     value: float
@@ -27,12 +27,12 @@ class Measurement:
 
     @property
     def is_met(self) -> bool:
-        """Whether the figure meets its limit."""
+        """Whether the value meets its limit."""
         return self.value >= self.limit if self.sense == "at least" else self.value <= self.limit
 
 
 Benchmark = Callable[[], list[Measurement]]
-"""Measures figures."""
+"""Returns measurements."""
 B = TypeVar("B", bound=Benchmark)
 BENCHMARKS: Registry[Benchmark] = Registry("benchmark")
 """All benchmarks by name."""
@@ -85,13 +85,14 @@ def ratio(slow: Callable[[], float], fast: Callable[[], float], rounds: int = 5)
     return median(slow() / fast() for _ in range(rounds))
 
 
-def report(figures: Sequence[Measurement], *, json_output: bool) -> int:
-    """Prints the figures; returns 0 if all meet their limits, else 1."""
+def report(measurements: Sequence[Measurement], *, json_output: bool) -> int:
+    """Prints measurements; returns 0 if all meet their limits, else 1."""
     if json_output:
-        found = {f.name: {"value": round(f.value, 4), "limit": f"{f.sense} {f.limit:g}", "met": f.is_met} for f in figures}
+        found = {one.name: {"value": round(one.value, 4), "limit": f"{one.sense} {one.limit:g}", "met": one.is_met} for one in measurements}
         print(json.dumps(found))
     else:
-        width = max(len(f.name) for f in figures)
-        for f in figures:
-            print(f"{'met   ' if f.is_met else 'MISSED'}  {f.name:<{width}}  {f.value:10.2f}  ({f.sense} {f.limit:g})  {f.what}")
-    return 0 if all(f.is_met for f in figures) else 1
+        width = max(len(one.name) for one in measurements)
+        for one in measurements:
+            limit = f"({one.sense} {one.limit:g})"
+            print(f"{'met   ' if one.is_met else 'MISSED'}  {one.name:<{width}}  {one.value:10.2f}  {limit}  {one.what}")
+    return 0 if all(one.is_met for one in measurements) else 1

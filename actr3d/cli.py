@@ -401,16 +401,16 @@ def _experiment(options: argparse.Namespace) -> int:
 
     out = command.Output(json=options.json)
     if options.name is None:
-        _refuse(options, (*BESIDE_TRIAL, "trial", "record"), "which experiment? name a design, a file or the folder of an experiment")
+        _refuse(options, (*BESIDE_TRIAL, "trial", "record"), "name a design, a file or the folder of an experiment, or")
         return command.list_designs(out)
     if options.trial is not None or options.record is not None:
         if options.trial is None or options.record is None:
             raise SettingError("--trial ID and --record RECORDING are given together")
-        _refuse(options, BESIDE_TRIAL, "--trial: runs a trial again exactly as it was")
+        _refuse(options, BESIDE_TRIAL, "--trial: runs a trial again exactly as it was;")
         return command.run_again(options.name, options.trial, options.record, out)
     numbers = _numbers(options)
     if options.check:
-        _refuse(options, BESIDE_CHECK, "--check: runs two trials on this computer and stores nothing")
+        _refuse(options, BESIDE_CHECK, "--check: runs two trials on this computer and stores nothing;")
         return command.check(options.name, out, **numbers)
     if options.any_version and not options.resume:
         raise SettingError("--any-version: is for an experiment that is continued; add --resume")
@@ -447,12 +447,17 @@ BESIDE_TRIAL = (*BESIDE_CHECK, "set", "participants", "trials", "check")
 def _refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
     """Checks that none of some options is given.
 
+    Args:
+        options: The options.
+        names: The names of those that must not be given.
+        why: The beginning of the error, which ends with what to leave out.
+
     Raises:
         SettingError: If one is.
     """
     idle = [f"--{name.replace('_', '-')}" for name in names if (given := getattr(options, name)) is not False and given not in (None, [])]
     if idle:
-        raise SettingError(f"{why}; leave out {' and '.join(idle)}")
+        raise SettingError(f"{why} leave out {' and '.join(idle)}")
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:

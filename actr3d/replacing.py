@@ -15,6 +15,10 @@ UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.tmp")
 """The names of files that are not finished; a killed process leaves them."""
 
 
+NO_LINKS = (errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
+"""The errors of a file system that has no hard links, such as that of many USB sticks."""
+
+
 @contextmanager
 def replacing(target: Path) -> Generator[Path]:
     """Yields the path of a new file beside a file, which it replaces at the end of the block; after an error, nothing changes.
@@ -49,7 +53,13 @@ def creating(target: Path) -> Generator[Path]:
     with _unfinished(target) as part:
         yield part
         _sync(part)
-        os.link(part, target)  # unlike a rename, this never replaces a file
+        try:
+            os.link(part, target)  # unlike a rename, this never replaces a file
+        except OSError as error:
+            if error.errno not in NO_LINKS:
+                raise
+            target.open("xb").close()
+            part.replace(target)
 
 
 @contextmanager

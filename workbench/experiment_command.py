@@ -97,8 +97,13 @@ EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExper
 
 
 def processors() -> int:
-    """Returns the number of processors that this process may use, where the system says it; else the number that the computer has."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Returns the number of processors that an experiment uses by default: a container or a job of a cluster may have fewer than its
+    machine."""
+    try:
+        from dask.system import CPU_COUNT  # as the command has it; loaded when it is needed
+    except ModuleNotFoundError:  # the packages for experiments are optional
+        return os.cpu_count() or 1
+    return CPU_COUNT
 
 
 class ExperimentRunError(Actr3dError):

@@ -24,7 +24,6 @@ from workbench.experiment_command import (
     ExperimentProgress,
     ExperimentRunError,
     TriedFacts,
-    processors,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
 from workbench.file_names import NAME, STAMP, unique_suffix
@@ -354,7 +353,8 @@ class Experiments:
         facts = None if new else folder.facts
         self._starting.add(name)
         try:
-            command = await ExperimentCommand.start([*arguments, f"--workers={workers or processors()}"], self._made_root())
+            options = [] if workers is None else [f"--workers={workers}"]
+            command = await ExperimentCommand.start([*arguments, *options], self._made_root())
         finally:
             self._starting.discard(name)
         if self._closed:

@@ -600,14 +600,14 @@ def _check_names(names: Iterable[Any], where: str) -> None:
 
 
 def plain_text(value: Any) -> str:
-    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`; a whole number is written without a point."""
+    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`; `1.0` as `1`."""
     match value:
         case None | "":
             return "none"
         case float() if math.isnan(value):
             return "none"
         case float():
-            return text if float(text := f"{value:g}") == value else repr(value)
+            return text if float(text := f"{value:g}") == value else repr(float(value))
         case list() | tuple() | dict():
             return json.dumps(value)
         case _:

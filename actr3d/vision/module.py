@@ -230,7 +230,7 @@ class Vision(WithParameters, Searching):
         """Begins a search, with a request to the body for a view at the end of the present tick."""
         search.clear()
         search.begun = self.sch.now_us
-        search.due = self.sch.after(duration(self.random, delay, self.delay_sd))
+        search.due = self.sch.after(duration(self, delay, self.delay_sd))
         self._ask_for_view(search)
         return search
 

@@ -37,7 +37,7 @@ function testOf(isShown, words, agent) {
 
 function Groups() {
   const all = GROUPS.map(({ id }) => id);
-  return html`<${Menu} class="events-menu" label="Events that are shown" look="" face=${html`Events <span class="quiet">${groups.value.length}/${all.length}</span>`}>
+  return html`<${Menu} class="events-menu" label="Events that are shown" name=${null} look="" face=${html`Events <span class="quiet">${groups.value.length}/${all.length}</span>`}>
     ${() => html`${GROUPS.map(
         ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => (groups.value = toggled(groups.value, id))} />${text}</label>`,
       )}

@@ -9,12 +9,13 @@ const [GAP, EDGE] = [2, 8]; // to the button, and to the edge of the page [px]
 /**
  * @param label What the menu is called.
  * @param title The title of the button.
+ * @param name The name of the button: `label`, unless what it shows is its name (null).
  * @param face What the button shows; `look` is its class.
  * @param class The class of the box, besides `menu`; the button has it with `-button`.
  * @param onClick Called when the button is pressed.
  * @param children What it contains: a function of a function that opens the box (true) or closes it (false).
  */
-export function Menu({ label, title = label, face, look = "bare", class: kind, disabled = false, onClick, children }) {
+export function Menu({ label, title = label, name = label, face, look = "bare", class: kind, disabled = false, onClick, children }) {
   const id = useId();
   const button = useRef(null);
   const box = useRef(null);
@@ -33,6 +34,6 @@ export function Menu({ label, title = label, face, look = "bare", class: kind, d
     });
   }
 
-  return html`<${Button} button=${button} class="${look} ${kind}-button" popovertarget=${id} aria-label=${label} title=${title} disabled=${disabled} onClick=${onClick}>${face}<//>
+  return html`<${Button} button=${button} class="${look} ${kind}-button" popovertarget=${id} aria-label=${name} title=${title} disabled=${disabled} onClick=${onClick}>${face}<//>
     <div ref=${box} id=${id} popover="auto" class="menu ${kind}" role="group" aria-label=${label} onBeforeToggle=${place}>${children((shown) => box.current?.togglePopover(shown))}</div>`;
 }

@@ -511,7 +511,7 @@ def test_in_the_trace_a_change_by_hand_is_read_before_its_effect(pages: Callable
     say(page, type="step", ticks=12)
     shows(page, "#time", r"0\.12 s")
     page.get_by_label("Filter the trace").fill("goal")
-    page.get_by_role("button", name="Events that are shown").click()
+    page.get_by_role("button", name="Events ", exact=False).first.click()
     page.get_by_role("button", name="All", exact=True).evaluate("one => one.click()")
     page.keyboard.press("Escape")
     say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:rest"})

@@ -685,9 +685,9 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
     assert "--trial: runs a trial again exactly as it was; leave out --set and --participants" in capsys.readouterr().err
     assert not Path("x.rec").exists()
     assert main(["experiment", "--trial", "3", "--record", str(tmp_path / "b.rec")]) == 2
-    assert "which experiment? name a design, a file or the folder" in capsys.readouterr().err
+    assert "name a design, a file or the folder of an experiment, or leave out --" in capsys.readouterr().err
     assert main(["experiment", "--workers", "3"]) == 2
-    assert "which experiment? name a design, a file or the folder of an experiment; leave out --workers" in capsys.readouterr().err
+    assert "name a design, a file or the folder of an experiment, or leave out --workers" in capsys.readouterr().err
 
 
 def test_nothing_of_a_trial_stays_alive() -> None:

@@ -319,10 +319,16 @@ def on_the_way(talk: Talk, to: float) -> dict[str, Any]:
 def test_a_program_that_is_stopped_on_its_way_stays_there_says_where_it_went_and_can_go_on(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     events = talk.state["events"]
+    talk.say("seek", time=0)
+    talk.until("paused", time=0)
+    talk.say("breakpoints", productions=["count"])
+    talk.say("run")
+    talk.wait(lambda: talk.state["breakpoint"] == "count")
+    talk.say("breakpoints", productions=[])
     assert on_the_way(talk, 6.0)["target"] == 6.0
     talk.say("stop")
     stopped = talk.until("paused")
-    assert (stopped["reason"], stopped["target"]) == ("stopped while going to 6 s", None)
+    assert (stopped["reason"], stopped["target"], stopped["breakpoint"]) == ("stopped while going to 6 s", None, None)
     assert 0 < stopped["time"] < 6.0 < stopped["furthest"]
     talk.say("run")
     assert talk.until("ended")["events"] == events

@@ -35,7 +35,7 @@ class Restart(PageCommand):
 
 @page_command
 class Stop(PageCommand):
-    """Ends the worker process of the run, whatever it does; a run on its way to another time stays where it is instead, if it answers."""
+    """Ends the worker process of the run, whatever it does; if it answers, a seek in progress is cancelled instead."""
 
     type: Literal["stop"] = "stop"
     cancels_seek: ClassVar[bool] = True

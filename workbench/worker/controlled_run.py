@@ -252,21 +252,21 @@ class ControlledRun(ABC):
             if self._recording is not None:
                 self._recording.fact(name, value)
 
-    def _begin_recording(self, begin: Callable[[], Recording], *, spare: bool) -> None:
+    def _begin_recording(self, begin: Callable[[], Recording], *, may_fail: bool) -> None:
         """Begins the recording.
 
         Args:
             begin: Begins it.
-            spare: Whether nobody needs it yet: then the run goes on although it cannot be begun.
+            may_fail: Whether the run goes on if it cannot be begun or written; see `Recording.may_fail`.
 
         Raises:
             RecordingError: If it cannot be begun, and is needed.
         """
         try:
             self._recording = begin()
-            self._recording.may_fail = spare
+            self._recording.may_fail = may_fail
         except RecordingError as error:
-            if not spare:
+            if not may_fail:
                 raise
             self._not_begun = error
 

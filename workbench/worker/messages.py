@@ -124,9 +124,9 @@ class State(Message, frozen=True, kw_only=True):
 
     status: Status
     reason: str
+    """Why the run is paused, has ended or failed."""
     breakpoint: str | None = None
     """The production at whose breakpoint the run is paused; None if it is not paused at one."""
-    """Why the run is paused, has ended or failed."""
     tick: int
     time: float
     """Time of the run [s]."""

@@ -222,7 +222,7 @@ class ProgramRun(ControlledRun):
             if start.record is not None:
                 facts = program_facts(start.path, self._source, self._seed, None)
                 record = partial(Recording, start.record, {**facts, NAMED: Path(start.record).stem})
-                self._begin_recording(record, spare=start.recorded is not None)
+                self._begin_recording(record, may_fail=start.recorded is not None)
             while not controller.leaving:
                 self._run_once()
                 with suppress(_Again):

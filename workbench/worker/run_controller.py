@@ -210,9 +210,9 @@ class RunController:
                 self.pause(found)
         self.show_if_due()
 
-    def pause(self, reason: str) -> None:
-        """Pauses the run."""
-        self.status, self.reason, self._breakpoint = "paused", shortened(reason), self.watch.met
+    def pause(self, reason: str, at_breakpoint: str | None = None) -> None:
+        """Pauses the run; `at_breakpoint` is the production whose breakpoint it has met, if it has."""
+        self.status, self.reason, self._breakpoint = "paused", shortened(reason), at_breakpoint
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
@@ -366,7 +366,7 @@ class RunController:
             found = self.watch.found(trace.since(self._seen))
             self._seen = len(trace)
             if found is not None:
-                self.pause(found)
+                self.pause(found, self.watch.met)
 
     # -- what is sent to the server
 

@@ -105,7 +105,7 @@ class SimulationRun(ControlledRun):
         if start.record is not None:
             facts = built_facts(start.path, start.source, parameters, limits.program_seed, limits.until, helpers.loaded)
             record = partial(simulation.record, start.record, **{**facts, NAMED: Path(start.record).stem})
-            self._begin_recording(record, spare=start.recorded is not None)
+            self._begin_recording(record, may_fail=start.recorded is not None)
             helpers.on_load = lambda loaded: self._record(helpers=loaded)  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add_recorded)

@@ -30,9 +30,10 @@ def logistic_noise(numbers: Any, scale: float) -> float:
     return scale * math.log(1.0 / x - 1.0)
 
 
-def duration(numbers: random.Random, mean: float, sd: float | None) -> float:
-    """Draws a duration from the normal distribution, at least 0 [s]; without a standard deviation it is the mean."""
-    return mean if sd is None else max(0.0, numbers.gauss(mean, sd))
+def duration(model: Any, mean: float, sd: float | None) -> float:
+    """Draws a duration from the normal distribution with a model's random numbers, at least 0 [s]; without a standard deviation it is the
+    mean."""
+    return mean if sd is None else max(0.0, model.random.gauss(mean, sd))
 
 
 def total(parts: Iterable[float], start: float = 0) -> float:

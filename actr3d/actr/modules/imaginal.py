@@ -37,7 +37,7 @@ class ImaginalModule(WithParameters, Model):
     def delay_time(self) -> float:
         """Returns the duration of the next change [s]."""
         time: float = cast("Any", self.delay)() if callable(self.delay) else self.delay
-        return duration(self.random, time, self.delay_sd)
+        return duration(self, time, self.delay_sd)
 
     def set(self, chunk: Any) -> Iterator[float]:
         """Puts a new chunk into the buffer; its variables have the values that are bound now."""

@@ -50,7 +50,7 @@ class SOSVision(WithParameters, Model):
         noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
         self._trace_request("request", pattern=pattern, noticed=noticed)
         self.busy = True
-        yield duration(self.random, self.delay, self.delay_sd)
+        yield duration(self, self.delay, self.delay_sd)
         self.busy = False
         seen = self.random.choice(noticed) if noticed else None
         if seen is None or not any(obj is seen for obj in self._objects()) or getattr(seen, "visible", True) == False:  # noqa: E712

@@ -126,7 +126,7 @@ def test_agents_take_any_attribute() -> None:
         (lambda: type("Agent", (ACTR,), {})(), "production_time", "x", r"Agent.production_time: must be a number \(got 'x'\)"),
     ],
 )
-def test_a_parameter_can_be_set_to_what_it_can_be_made_with(module: Callable[[], Any], name: str, value: object, message: str) -> None:
+def test_a_parameter_cannot_be_set_to_a_wrong_value(module: Callable[[], Any], name: str, value: object, message: str) -> None:
     part = module()
     before = getattr(part, name, "none")
     with pytest.raises(ParameterError, match=f"^{message}"):
