@@ -523,14 +523,15 @@ def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_
     assert abs(heads.nth(2).evaluate(TEXT_END) - cells.nth(2).evaluate(TEXT_END)) < 2
     marked = blank.locator("#drawn [aria-current=true]")
     expect(marked).to_have_count(0)
-    until(
-        blank, lambda: blank.evaluate("async () => (await part('store.js')).session.value !== null")
-    )  # a later one would replace what is set
     blank.evaluate("open_one()")
-    blank.evaluate("show('sums_trial_1')")
-    expect(marked.get_by_role("button")).to_have_text("1")
-    blank.evaluate("show(null)")
-    expect(marked).to_have_count(0)
+
+    def is_marked(recording: str | None) -> bool:
+        blank.evaluate("(recording) => void show(recording)", recording)  # again: what the page hears of its own session replaces it
+        return marked.count() == 1
+
+    until(blank, lambda: is_marked("sums_trial_1"))
+    assert marked.get_by_role("button").text_content() == "1"
+    until(blank, lambda: not is_marked(None))
 
 
 def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
