@@ -89,6 +89,7 @@ LAST = (
     Column(name="worker", type="text", meaning="The worker that ran the trial; not reproducible."),
 )
 """The columns that follow those of a row. Source of the last two: the clock and the cluster."""
+_LAST_NAMES = tuple(column.name for column in LAST)
 
 
 class Store:
@@ -282,18 +283,22 @@ class Store:
         Args:
             after: Only trials with a greater number than this.
         """
-        names = [column.name for column in self.columns[: -len(LAST)]]
+        names = self._names
         while found := self._read("number > ? ORDER BY number LIMIT ?", (after, ROWS_AT_ONCE)):
             yield from (self._row(one, names) for one in found)
             after = found[-1][0]
 
     def row(self, number: int) -> Row | None:
         """Returns the row of a trial; None if it has not finished."""
-        names = [column.name for column in self.columns[: -len(LAST)]]
-        return next((self._row(one, names) for one in self._read("number = ?", (number,))), None)
+        return next((self._row(one, self._names) for one in self._read("number = ?", (number,))), None)
+
+    @property
+    def _names(self) -> list[str]:
+        """The names of the columns before `LAST`."""
+        return [column.name for column in self.columns[: -len(LAST)]]
 
     def _read(self, where: str, values: Sequence[Any]) -> list[Any]:
-        columns = ", ".join(("number", "data", *(column.name for column in LAST)))
+        columns = ", ".join(("number", "data", *_LAST_NAMES))
         try:
             with closing(self._database.execute(f"SELECT {columns} FROM trial WHERE {where}", values)) as cursor:
                 return cursor.fetchall()
@@ -318,7 +323,7 @@ class Store:
         if not isinstance(row, dict):
             raise ExperimentError(f"{self.folder / TRIALS}: is damaged (the row of trial {number!r} is no JSON object)")
         known = cast("Row", row)
-        return {**{name: known.get(name) for name in names}, **dict(zip((column.name for column in LAST), others, strict=True))}
+        return {**{name: known.get(name) for name in names}, **dict(zip(_LAST_NAMES, others, strict=True))}
 
 
 @contextmanager

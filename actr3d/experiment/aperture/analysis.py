@@ -146,7 +146,8 @@ def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> lis
         values = (math.nan,) * 3 if one is None else (one.value, one.low, one.high)
         found.append({"group": group, "participant": participant, **dict(zip(("boundary", "low", "high"), values, strict=True))})
         found[-1]["beyond"] = "yes" if one is not None and one.beyond else "no"
-    people, constraints = pd.DataFrame(found), Findings([]).all(judged=[answers for answers in judged if answers])
+    people = pd.DataFrame(found)
+    constraints = Findings([]).all(judged=[answers for answers in judged if answers])
     means = cell_means(rows, "passable", ["group", "ratio"])
     curves: list[Curve] = []
     for group in results.groups:
@@ -177,10 +178,7 @@ def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> lis
         "active memory."
     )
     return [
-        Section(
-            title="Constraints on a model of people",
-            parts=[_constraints(constraints)],
-        ),
+        Section(title="Constraints on a model of people", parts=[_constraints(constraints)]),
         Section(title="Judged passability", parts=parts),
     ]
 
