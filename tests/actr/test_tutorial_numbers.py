@@ -114,6 +114,7 @@ def test_the_faster_way_is_learned_and_chosen_as_often_as_the_equation_says(nois
     assert learned == approx([2 - 2.1, 2 - 3.1], abs=0.01)
 
 
+@pytest.mark.slow
 def test_both_ways_are_tried_equally_often_at_first() -> None:
     firsts = [run("utility_learning", seed=seed, mornings=1).agent.choices[0] for seed in range(100)]
     assert near(firsts.count("bus") / 100, 0.5, 100)

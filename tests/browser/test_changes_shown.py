@@ -411,6 +411,7 @@ Talker().run(0.3)
 """
 
 
+@pytest.mark.slow
 def test_a_warning_is_shown_where_the_run_has_given_it_and_nowhere_else(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "warns.py").write_text(WARNS, encoding="utf-8")
     page = pages("warns.py", tab="editor")

@@ -111,6 +111,7 @@ def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[...,
     assert path.read_text(encoding="utf-8") == "# mended\n" + MIND.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_run_beside_unsaved_text_is_said_to_be_of_the_saved_text(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     path = written("unsaved.py", "print(undefined_name)\n")
     page = pages("unsaved.py")

@@ -189,6 +189,7 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
 STAYS = "def one(size):\n    return size\n\n" + "".join(f"def other_{number}(size):\n    return 1\n\n" for number in range(10))
 
 
+@pytest.mark.slow
 def test_after_renaming_the_page_leads_to_the_lines_in_which_the_word_stays(opened: Callable[[str], Page]) -> None:
     page = opened(STAYS)
     at_end_of(page, "return size")

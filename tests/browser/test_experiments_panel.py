@@ -143,6 +143,7 @@ def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callab
     assert workbench.get("/api/experiments").json() == before
 
 
+@pytest.mark.slow
 def test_a_value_that_the_model_does_not_take_is_marked_and_cannot_be_run(pages: Callable[..., Page], design: str) -> None:
     page = pages(design.partition(":")[0], tab="experiments", refusals=True)
 

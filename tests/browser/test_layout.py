@@ -267,6 +267,7 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
 SAY = """async (message) => void (await (await part("server.js")).request(message))"""
 
 
+@pytest.mark.slow
 def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pages, workbench: Served) -> None:
     page = pages("doorway.py", width=853, height=533, tab="experiments")
     shows(page, "#status", "at its start")

@@ -120,6 +120,7 @@ def build() -> Simulation:
 """
 
 
+@pytest.mark.slow
 def test_an_error_of_a_run_leads_to_its_line_and_is_marked_as_past_in_the_next_run(page: Page, workbench: Served) -> None:
     file = workbench.folder / "wrong.py"
     file.write_text(WALKER, encoding="utf-8")

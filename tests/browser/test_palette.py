@@ -130,6 +130,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         assert any(name in one for one in names), name
 
 
+@pytest.mark.slow
 def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_run(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     one: dict[str, Any] = {
@@ -292,6 +293,7 @@ def test_the_palette_sets_parameters_clears_messages_and_switches_to_other_open_
     expect(page.get_by_label("Model", exact=True)).to_have_value("counting.py")
 
 
+@pytest.mark.slow
 def test_the_focus_returns_to_where_it_was_when_what_a_command_has_opened_is_closed(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="buffers")
     shows(page, "#status", "at its start")

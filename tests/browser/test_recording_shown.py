@@ -239,6 +239,7 @@ def workers(process: int) -> list[int]:
     return [one for child in children for one in (child, *workers(child))]
 
 
+@pytest.mark.slow
 def test_an_opened_recording_that_is_changed_on_a_full_disk_is_no_longer_said_to_be_recorded(pages: Pages, workbench: Served) -> None:
     name = recorded(workbench, "counting.py")
     page = pages(refusals=True)
@@ -385,6 +386,7 @@ def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pag
     expect(page.locator(".toast")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_the_parameters_of_a_recording_are_those_of_its_text(pages: Pages, workbench: Served) -> None:
     file = workbench.folder / "sized.py"
     file.write_text("size = 3\nspeed = 2\nprint(size, speed)\n", encoding="utf-8")

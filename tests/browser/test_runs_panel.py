@@ -446,6 +446,7 @@ IN_ITS_BOX = """row => {
 }"""
 
 
+@pytest.mark.slow
 def test_runs_without_a_body_are_compared_by_what_their_agents_did(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")  # its tab Runs is not open
     expect(page.locator("#status")).to_contain_text("at its start")

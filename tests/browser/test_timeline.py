@@ -609,6 +609,7 @@ def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
         assert all(one[1] < other[0] for one, other in pairwise(drawn))
 
 
+@pytest.mark.slow
 def test_the_labels_of_a_saved_plot_stand_under_their_lines(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     page.get_by_role("button", name="Run", exact=True).click()

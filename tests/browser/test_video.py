@@ -12,8 +12,6 @@ from playwright.sync_api import Page, expect
 
 from tests.helpers.page import PATIENCE, Users, shows, until
 
-pytestmark = pytest.mark.scene
-
 DECODED = """async ([video, picture, count]) => {
     const player = Object.assign(document.createElement("video"), { src: video, muted: true });
     document.body.append(player);
@@ -43,6 +41,8 @@ DECODED = """async ([video, picture, count]) => {
 """Compares each picture of a video with a PNG: how far the colours are off on average."""
 
 
+@pytest.mark.slow
+@pytest.mark.scene
 def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[..., Page], users: Users, tmp_path: Path) -> None:
     page = pages(width=560, height=400)
     element = page.wait_for_selector("iframe[title='3D view'][src^='/viser/']", state="attached", timeout=PATIENCE)
@@ -85,17 +85,6 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
         dialog.get_by_label("Speed").select_option(speed)
         make.click()
         expect(dialog.get_by_role("alert")).to_contain_text(wrong)
-    too_long = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 2000)"
-    assert page.evaluate(too_long, {"begin": "0", "end": "600", "speed": "1"}) == {}
-    assert "at most 10 minutes" in page.evaluate(too_long, {"begin": "0", "end": "600", "speed": "0.5"})["end"]
-
-    wrong = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 5000)"
-    assert page.evaluate(wrong, {"begin": "1:20:00", "end": "2:00:00", "speed": "1"})["end"] == (
-        "must be from 0 to 1:23:20.00, which the run has reached (got 2:00:00)"
-    )
-    assert page.evaluate(wrong, {"begin": "1:20:00", "end": "1:10:00", "speed": "1"})["end"] == (
-        "must be later than the first time, 1:20:00.00 (got 1:10:00)"
-    )
 
     first.fill("0.3")
     last.fill("0.6")
@@ -132,3 +121,17 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     page.evaluate("() => delete window.VideoEncoder")
     button.click()
     expect(dialog).to_contain_text("This browser cannot make videos")
+
+
+def test_times_of_which_no_video_can_be_made_are_named(blank: Page) -> None:
+    too_long = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 2000)"
+    assert blank.evaluate(too_long, {"begin": "0", "end": "600", "speed": "1"}) == {}
+    assert "at most 10 minutes" in blank.evaluate(too_long, {"begin": "0", "end": "600", "speed": "0.5"})["end"]
+
+    wrong = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 5000)"
+    assert blank.evaluate(wrong, {"begin": "1:20:00", "end": "2:00:00", "speed": "1"})["end"] == (
+        "must be from 0 to 1:23:20.00, which the run has reached (got 2:00:00)"
+    )
+    assert blank.evaluate(wrong, {"begin": "1:20:00", "end": "1:10:00", "speed": "1"})["end"] == (
+        "must be later than the first time, 1:20:00.00 (got 1:10:00)"
+    )

@@ -369,7 +369,7 @@ COVERS = """() => {
 """Returns whether the tools or the small retina cover a corner of what is on the stage, or it is not in the picture."""
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("view", ["follow", "side"])
 def test_neither_tools_nor_retina_cover_the_doorway_in_a_small_window(pages: Callable[..., Page], view: str) -> None:
     page = pages(width=853, height=533)
@@ -405,6 +405,7 @@ def test_no_label_lies_under_the_retina(pages: Callable[..., Page]) -> None:
     expect(label).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[..., Page], tmp_path: Path) -> None:
     page = pages()
     frame = frame_of(page)

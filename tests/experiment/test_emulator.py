@@ -203,7 +203,7 @@ def test_the_bound_of_a_parameter_is_found_although_the_model_fails_for_much_of_
     assert None not in works_below_a_third(points, data, 24).interval(1)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_where_the_model_fails_is_no_bound_of_the_parameter_that_makes_it_fail(seed: int) -> None:
     """It fails for high a; other values of d, near which it works, do not make that a bound."""

@@ -130,6 +130,7 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     assert "95 % interval: none: it needs more means than parameters" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_held_out_design_may_have_another_measure_than_the_fit(
     tmp_path: Path, client: Any, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -286,7 +287,7 @@ def line():
 """
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("differ", ["nothing", "participants", "trials"])
 def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that_was_run(differ: str, tmp_path: Path, capsys: Any) -> None:
     """It is so, too, if participants, or the trials of one, differ more than what an interval allows."""
@@ -418,6 +419,7 @@ def test_a_fit_at_whose_candidates_the_model_always_fails_shows_its_error(tmp_pa
         fit.run(STARTING + 2)
 
 
+@pytest.mark.slow
 def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client: Any) -> None:
     """Else, a model that fails in hard trials would be compared by the easy ones."""
     line = FAILING.replace("FAILS", "x == 5 and abs(slope - 1.35) < 0.1 and self.random.random() < 0.6")

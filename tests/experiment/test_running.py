@@ -139,6 +139,7 @@ def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: An
     assert len(after) == 72
 
 
+@pytest.mark.slow
 def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
     tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -286,6 +287,7 @@ def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
         pass
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
     monkeypatch.setattr(cluster, "PATIENCE", 1.0)
     out = tmp_path / "out"
@@ -599,6 +601,7 @@ def test_one_trial_is_not_called_trials(tmp_path: Path, client: Any, monkeypatch
     assert re.search(r"^1 trial in [\d,]+ s ", said, re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_two_commands_may_write_the_table_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_experiment(tmp_path)
     folder = store_rows(tmp_path / "out", str(path), lambda trial: {"rt": 0.1, "luck": 0.5})

@@ -413,6 +413,7 @@ def test_a_misspelled_measure_is_refused_before_anything_is_written(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first_trial(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -762,6 +763,7 @@ def test_a_trial_whose_values_cannot_be_derived_is_a_failure(tmp_path: Path) -> 
         process.end()
 
 
+@pytest.mark.slow
 def test_a_trial_is_repeated_with_the_same_order_of_sets(tmp_path: Path) -> None:
     model = COUNTER.replace("luck = model.random.random()", 'luck = "".join({"alpha", "beta", "gamma", "delta", "eps"})\nprint(luck)')
     path = write_experiment(tmp_path, model=model, factors='{"n": [1]}', participants=1, trials=1)

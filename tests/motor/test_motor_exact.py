@@ -78,6 +78,7 @@ def test_any_past_time_is_restored_exactly() -> None:
             assert digest(simulation) == digests[later]
 
 
+@pytest.mark.slow
 def test_observers_and_tracing_change_nothing() -> None:
     def end(trace: str, observed: bool) -> Any:
         simulation = restless(trace)

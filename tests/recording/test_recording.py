@@ -203,6 +203,7 @@ simulation.run(60)
 """
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("source", [FAST, FALLING], ids=["without a body", "without events"])
 def test_a_fast_run_that_is_killed_lacks_no_more_than_its_last_second(source: str, tmp_path: Path) -> None:
     (tmp_path / "fast.py").write_text(source, encoding="utf-8")

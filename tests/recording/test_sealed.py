@@ -82,6 +82,7 @@ def recorded(folder: Path, text: str) -> Path:
     return folder / "run"
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("text", [LOOKING + "from python_actr import *\nclass A(ACTR): pass\nA().run()\n", LOOKING + BUILT])
 def test_no_module_that_is_not_recorded_comes_from_the_folder_of_the_file(
     text: str, tmp_path: Path, trap: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

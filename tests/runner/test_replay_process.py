@@ -90,6 +90,7 @@ def test_a_program_that_exits_from_its_last_handler_keeps_its_verdict(
     assert "differs: event " in capsys.readouterr().out
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     "does",
     [

@@ -76,6 +76,7 @@ def test_the_choice_between_two_openings_follows_their_sizes() -> None:
     assert chance_of([counts[1.2], counts[0.6]], [SEEDS / 2, SEEDS / 2]) < LEVEL  # the test can tell
 
 
+@pytest.mark.slow
 def test_by_the_sos_rule_each_survives_by_itself_one_of_those_is_drawn_and_it_may_fail() -> None:
     counts = chosen(", rule='sos', salience=lambda opening: 0.8 if opening.width > 1 else 0.3")
     wide = 0.8 * 0.7 + 0.8 * 0.3 / 2

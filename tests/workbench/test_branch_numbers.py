@@ -109,6 +109,7 @@ def test_numbers_of_trees_that_are_gone_for_good_are_forgotten(desk: Desk, tmp_p
     assert list(json.loads(file.read_text("utf-8"))) == [other.session.recording]
 
 
+@pytest.mark.slow
 def test_a_file_of_numbers_that_is_damaged_or_cannot_be_written_is_no_obstacle(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED, record=True)
     client = Client(desk, tmp_path, talk.sessions)

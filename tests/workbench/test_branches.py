@@ -154,7 +154,7 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
 ASKED = r"what lies ahead, from 0\.1 s to [0-9.]+ s, would be lost(, and what follows would not be recorded|: it cannot be kept)"
 
 
-@pytest.mark.daily(2)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("undone", [False, True])
 @pytest.mark.parametrize("failed", [True, False])
 @pytest.mark.parametrize("kind", RUNS)

@@ -161,7 +161,7 @@ sys.exit(workbench.cli.main([sys.argv[1], "--no-browser"]))
 """
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("swallowed", ["()", "BaseException"])
 def test_an_interruption_while_a_library_is_loaded_ends_it_quietly_even_if_the_library_swallows_it(tmp_path: Path, swallowed: str) -> None:
     command = [sys.executable, "-c", INTERRUPTED.format(swallowed=swallowed), str(tmp_path)]

@@ -268,7 +268,7 @@ def drawn(random: Random, groups: Mapping[str, tuple[int, float]], conditions: S
     return rows
 
 
-@pytest.mark.daily(2)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("groups", "conditions"),
     [

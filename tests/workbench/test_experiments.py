@@ -150,6 +150,7 @@ def test_a_design_is_checked_again_after_a_change_of_whatever_file_it_may_use(
     desk.do(twice())
 
 
+@pytest.mark.slow
 def test_values_reach_the_design_as_they_are(workbench: Served) -> None:
     texts = ["a, b", "'", '"', "1", "None", "é\n", "--json", "[1]"]
     facts = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": [1, 2.5, True, None], "mode": "x"}}).json()
@@ -234,6 +235,7 @@ def test_the_time_of_an_experiment_is_when_it_was_made_also_in_a_folder_of_anoth
     assert ExperimentFolder(folder).made == 1_000_000_000
 
 
+@pytest.mark.slow
 def test_a_trial_is_recorded_and_opened(workbench: Served, finished: str) -> None:
     row = workbench.get(f"/api/experiments/{finished}/rows?first=3&most=1").json()["rows"][0]
     name = workbench.post(f"/api/experiments/{finished}/trial", {"number": 3}).json()["recording"]
@@ -506,6 +508,7 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
     folder.unlink()
 
 
+@pytest.mark.slow
 def test_an_experiment_that_cannot_be_written_is_shown_with_its_report(workbench: Served, finished: str) -> None:
     own = workbench.folder / ".workbench"
     folder, made = own / "experiments" / "archived", own / "reports" / "archived"
@@ -532,6 +535,7 @@ def test_an_experiment_that_cannot_be_written_is_shown_with_its_report(workbench
     assert workbench.post(f"{path}/delete").status_code == 200
 
 
+@pytest.mark.slow
 def test_errors_of_a_report_do_not_show_where_the_server_stores_it(workbench: Served, finished: str) -> None:
     report = workbench.folder / ".workbench" / "experiments" / finished / "report"
     kept = report.rename(report.with_name("kept")) if report.exists() else None

@@ -135,6 +135,7 @@ def test_a_damaged_scene_has_no_curves(desk: Desk, tmp_path: Path, scene: Callab
         assert desk.ask(tmp_path, "/api/recordings/m").status == 200
 
 
+@pytest.mark.slow
 def test_a_file_that_takes_too_long_is_left_out_and_holds_up_no_other(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listing, "LONGEST", 1.0)
     paths = {name: written(tmp_path, name, firing(3)) for name in ("a", "b", "c")}

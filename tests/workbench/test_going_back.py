@@ -191,6 +191,7 @@ def command_of(simulation: Simulation) -> tuple[str | None, str, tuple[Any, ...]
     return next(iter(simulation.world.bodies)), "teleport", (-0.3, 0.2, 0.1)
 
 
+@pytest.mark.slow
 def test_every_answer_is_that_of_its_moment_for_a_model_that_looks_in_many_ways() -> None:
     with shown_of(LOOKING, 3) as shown:
         check_going_back(shown, 160, 5, random_seed=1)
@@ -271,6 +272,7 @@ def test_every_answer_is_that_of_its_moment_in_a_whole_run() -> None:
         check_going_back(shown, 1_300, 6, random_seed=1)
 
 
+@pytest.mark.slow
 def test_a_program_shows_how_far_it_has_come_on_its_way_to_an_earlier_time(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     events = talk.state["events"]
@@ -336,6 +338,7 @@ def test_a_program_that_is_stopped_on_its_way_stays_there_says_where_it_went_and
     talk.wait(lambda: not talk.session.alive)
 
 
+@pytest.mark.slow
 def test_a_program_that_does_not_answer_on_its_way_is_ended_by_stop(desk: Desk, tmp_path: Path) -> None:
     again = tmp_path / "again"
     talk = desk.begin(

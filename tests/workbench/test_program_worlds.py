@@ -155,7 +155,7 @@ def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(d
     assert told(talk) == seen[0.01]
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("source", "begun"), [(ONE, [0]), (TRIALS, [0.1, 0.5]), (UNSTEPPED, [0, 0.4])], ids=["one", "trials", "unstepped"])
 def test_a_recording_has_the_curves_of_the_simulations_of_its_program_opened_or_not(
     desk: Desk, tmp_path: Path, source: str, begun: list[float]
@@ -366,6 +366,7 @@ def test_changes_at_the_start_of_a_simulation_come_after_those_at_the_end_of_the
     assert recorded_commands(path) == [(1, 4, "move", "user")]
 
 
+@pytest.mark.slow
 def test_commands_of_a_program_itself_are_repeated_by_the_program_and_are_not_undone(desk: Desk, tmp_path: Path) -> None:
     source = (
         EXAMPLE

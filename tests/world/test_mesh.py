@@ -463,6 +463,7 @@ def test_files_together_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyP
         folder.read("b")
 
 
+@pytest.mark.slow
 def test_no_bytes_crash_the_process(tmp_path: Path) -> None:
     """Files with a few bytes changed, cut or doubled either make a world or a `MeshError`; in a separate process."""
     for kind in ("stl", "obj", "ply", "off", "glb"):

@@ -199,7 +199,7 @@ def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> Pas
     return simulation.result()
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("at", "to", "given"),
     [
@@ -234,7 +234,7 @@ def test_a_walker_that_notices_in_time_turns_where_it_stands_and_goes_on(model: 
     assert (result.wall_angle_deg or 0) > 54
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("aperture", "first", "then"), [(0.3, 0.3, 2.0), (0.35, 0.3, None), (0.3, 0.5, 3.0)])
 def test_a_walker_that_speeds_up_close_before_it_still_turns_in_time(model: Any, aperture: float, first: float, then: float | None) -> None:
     """The turn that is under way gets faster, too, and it stands still earlier."""
@@ -245,6 +245,7 @@ def test_a_walker_that_speeds_up_close_before_it_still_turns_in_time(model: Any,
     assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
 
 
+@pytest.mark.slow
 def test_a_turn_that_is_under_way_gets_faster_with_the_walk(model: Any) -> None:
     simulation = built(model, aperture=0.4, speed=0.6)
     body = simulation.world.bodies["walker"]

@@ -260,6 +260,7 @@ def test_a_walker_that_knows_its_body_knows_the_width_of_each_turn_that_another_
     assert widths[1] == pytest.approx(widths[0], abs=0.02)  # what was felt on the way is not exactly that turn
 
 
+@pytest.mark.slow
 def test_a_bar_is_part_of_the_body_that_it_feels(model: Any) -> None:
     assert chosen(model, 1, aperture=0.95) == 0
     assert chosen(model, 1, aperture=0.95, bar=0.9) > 10
@@ -272,6 +273,7 @@ def test_it_declines_a_doorway_that_is_much_too_narrow(model: Any, capsys: Any) 
     assert "cannot pass" in capsys.readouterr().out
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("nearest", "others", "judged"), [("stopped", "free", "not at all"), ("free", "stopped", "as it is")])
 def test_it_declines_if_the_passage_that_is_most_active_was_stopped(
     model: Any, monkeypatch: pytest.MonkeyPatch, nearest: str, others: str, judged: str

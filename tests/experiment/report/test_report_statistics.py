@@ -216,6 +216,7 @@ def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> Non
     assert row["F"] == pytest.approx((young.mean() - old.mean()) ** 2 / (pooled * 2 / 4))
 
 
+@pytest.mark.slow
 def test_groups_of_unequal_size_are_named_with_the_sums_of_squares_of_each_test(tmp_path: Path) -> None:
     (tmp_path / "equal").mkdir()
     equal = run_tests(grouped(tmp_path / "equal", effect=1.0), "rt")

@@ -457,6 +457,7 @@ model = Stroop()
 """
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(
     ("text", "name", "changed"),
     [
@@ -812,6 +813,7 @@ print(row["ink"], attrgetter("price")(Trial))
 """
 
 
+@pytest.mark.daily(15)
 @pytest.mark.parametrize(
     ("text", "name", "lines"),
     [
@@ -909,7 +911,7 @@ report(Base(), size=4)
 """
 
 
-@pytest.mark.daily(22)
+@pytest.mark.daily(8)
 @pytest.mark.parametrize(
     ("text", "why"),
     [
@@ -1100,7 +1102,7 @@ INHERITED = ("traced", "now", "stop", "explain")
 DERIVED = "class Derived(Base):\n    def lo|ok(self): pass\n"
 
 
-@pytest.mark.daily(24)
+@pytest.mark.daily(12)
 @pytest.mark.parametrize(
     ("text", "name", "why"),
     [

@@ -217,6 +217,7 @@ def test_a_run_that_has_begun_is_shown_from_its_start() -> None:
     in_notebook(cells)
 
 
+@pytest.mark.slow
 def test_a_run_that_has_begun_has_the_curves_of_one_that_was_shown_from_its_start() -> None:
     async def cells() -> None:
         told: list[Any] = []

@@ -232,6 +232,7 @@ def test_numbers_that_json_does_not_have_are_written_as_in_recordings(number: An
     assert json.loads(bounded_json(value)) == json.loads(to_json(value))
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     "data",
     [{"text": "x" * 10**6}, {"a": ["y" * 10**6] * 10}, {str(n): "z" * 100 for n in range(10_000)}, {"deep": [["w" * 1000] * 300] * 300}],
