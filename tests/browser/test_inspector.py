@@ -157,6 +157,7 @@ def test_buffers_and_modules_are_shown_and_what_changed_lights_up(pages: Pages, 
     expect(module(page, "memory").locator("summary")).to_contain_text("waits for 'count 2 ?next', asked at 0.050 s")
     expect(module(page, "memory").get_by_label("busy", exact=True)).to_be_visible()
     place = module(page, "memory").bounding_box()
+    expect(buffer(page, "goal").locator(".changed")).to_have_count(0)  # what the first cycle lit up
     lit = buffer(page, "goal").evaluate_handle(NOTE_CHANGES)
     page.click("#cycle")
     expect(buffer(page, "goal")).to_have_text("taskcountnumber3last5")
