@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from operator import ge, gt, le, lt
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-import annotated_types
+from annotated_types import Ge, Gt, Le, Lt, MinLen
 
 from actr3d.errors import ConfigurationError, did_you_mean
 from actr3d.weak_cache import weak_cache
@@ -172,26 +173,30 @@ def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
     return tuple(checked(item, declared, f"{where}[{n}]") for n, (item, declared) in enumerate(zip(values, items, strict=True)))
 
 
+_BOUNDS: dict[type, tuple[str, str, Callable[[Any, Any], bool]]] = {
+    Gt: ("gt", "> {}", gt),
+    Ge: ("ge", ">= {}", ge),
+    Lt: ("lt", "< {}", lt),
+    Le: ("le", "<= {}", le),
+    MinLen: ("min_length", "at least {} long", lambda value, least: len(value) >= least),
+}
+"""By class of the bounds: the attribute that holds the limit, the words of an error, and whether a value fits a limit."""
+
+
+def bound_words(bound: object) -> str:
+    """Returns a bound in words: `> 0`."""
+    attribute, words, _ = _BOUNDS[type(bound)]
+    return words.format(getattr(bound, attribute))
+
+
 def check_bound(bound: object, value: Any, where: str) -> None:
     """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored.
 
     Raises:
         ConfigurationError: If the value is out of bounds.
     """
-    if value is None:
+    if value is None or type(bound) not in _BOUNDS:
         return
-    match bound:
-        case annotated_types.Gt(gt=limit):
-            holds, says = value > limit, f"> {limit}"
-        case annotated_types.Ge(ge=limit):
-            holds, says = value >= limit, f">= {limit}"
-        case annotated_types.Lt(lt=limit):
-            holds, says = value < limit, f"< {limit}"
-        case annotated_types.Le(le=limit):
-            holds, says = value <= limit, f"<= {limit}"
-        case annotated_types.MinLen(min_length=least):
-            holds, says = len(value) >= least, f"at least {least} long"
-        case _:
-            return
-    if not holds:
-        raise ConfigurationError(f"{where}: must be {says} (got {value!r})")
+    attribute, _, fits = _BOUNDS[type(bound)]
+    if not fits(value, getattr(bound, attribute)):
+        raise ConfigurationError(f"{where}: must be {bound_words(bound)} (got {value!r})")

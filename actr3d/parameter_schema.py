@@ -9,19 +9,18 @@ import ast
 import inspect
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import lru_cache
 from itertools import zip_longest
-from operator import ge, gt, le, lt
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import annotated_types
 
 from actr3d.actr.kernel.source_code import parse, source_of_module, syntax_tree
-from actr3d.configuration import Live, is_finite
+from actr3d.configuration import Live, bound_words, check_bound, is_finite
 from actr3d.errors import ConfigurationError
 from actr3d.values import escape_surrogates
 
@@ -67,9 +66,9 @@ class Parameter:
         return "--" + self.name.replace("_", "-")
 
     @property
-    def _bounds(self) -> list[tuple[str, float, Callable[[Any, Any], bool]]]:
-        bounds = ((">", self.above, gt), (">=", self.least, ge), ("<", self.below, lt), ("<=", self.most, le))
-        return [(sign, limit, holds) for sign, limit, holds in bounds if limit is not None]
+    def _bounds(self) -> list[object]:
+        limits = {kind: getattr(self, field) for kind, field in _BOUNDS.items()}
+        return [getattr(annotated_types, kind)(limit) for kind, limit in limits.items() if limit is not None]
 
     def value(self, text: str) -> Any:
         """Returns the value of a text; a text that is not a Python literal is itself the value."""
@@ -81,8 +80,7 @@ class Parameter:
 
     def domain(self) -> str:
         """Returns the accepted values in one line: `number, > 0, <= 3 [m]`."""
-        bounds = [f"{sign} {limit}" for sign, limit, _ in self._bounds]
-        says = "True or False" if self.takes == "switch" else ", ".join([self.takes, *bounds])
+        says = "True or False" if self.takes == "switch" else ", ".join([self.takes, *map(bound_words, self._bounds)])
         if self.choices is not None:
             says = " or ".join(map(str, self.choices))
         if self.optional:
@@ -101,9 +99,8 @@ class Parameter:
             split = self.takes == "whole number" and isinstance(value, float)
             if split or isinstance(value, bool) or not isinstance(value, (int, float)) or not is_finite(value):
                 raise ConfigurationError(f"{self.name}: must be a {self.takes} (got {value!r})")
-            for sign, limit, holds in self._bounds:
-                if not holds(value, limit):
-                    raise ConfigurationError(f"{self.name}: must be {sign} {limit} (got {value!r})")
+            for bound in self._bounds:
+                check_bound(bound, value, self.name)
         elif self.choices is not None and value not in self.choices:
             raise ConfigurationError(f"{self.name}: must be one of {', '.join(map(repr, self.choices))} (got {value!r})")
         elif (self.takes == "switch" and not isinstance(value, bool)) or (self.takes == "text" and not isinstance(value, str)):

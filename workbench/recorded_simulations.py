@@ -9,7 +9,7 @@ from typing import Any
 from mujoco import MjModel
 
 from actr3d.recording import Recorded
-from actr3d.recording.schema import SIMULATION
+from actr3d.recording.facts import SIMULATION
 from actr3d.recording.writer import State
 from actr3d.world.compiled import from_bytes, from_text
 from workbench.program_time import timed

@@ -13,7 +13,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
-from actr3d.recording.schema import is_of_simulation
+from actr3d.recording.facts import is_of_simulation
 from actr3d.trace import TraceEvent
 from workbench.live_parameters import value_changed_by
 from workbench.loader import listing_of

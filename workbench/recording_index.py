@@ -15,7 +15,6 @@ from actr3d.clock import microseconds, seconds
 from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
-from actr3d.runner.facts import NAMED, REACHED
 from actr3d.runner.program_changes import of_user
 from actr3d.values import to_json
 from workbench.files import ModelFolder
@@ -133,7 +132,7 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
     ]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
     source = source_of(facts)
-    named = str(facts.get(NAMED, path.stem))
+    named = str(facts.get("named", path.stem))
     copied = copied_from(named)
     return Summary(
         id=path.stem,
@@ -180,7 +179,7 @@ def _duration(recorded: Recorded, last: list[Event]) -> float:
     facts = recorded.facts
     if "period_us" in facts:
         return seconds(recorded.ticks * facts["period_us"])
-    return facts.get(REACHED, seconds(last[-1][0]) if last else 0.0)
+    return facts.get("reached", seconds(last[-1][0]) if last else 0.0)
 
 
 def _result(events: list[Event]) -> dict[str, Any] | None:

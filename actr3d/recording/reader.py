@@ -18,10 +18,10 @@ from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.errors import RecordingError
 from actr3d.notebook import show_in_notebook
 from actr3d.recording.checksums import Checksums
-from actr3d.recording.facts import LARGEST, check_facts
+from actr3d.recording.facts import LARGEST, LEFT, SAME_AS, check_facts, is_of_simulation
 from actr3d.recording.key import is_sealed
 from actr3d.recording.opening import opened
-from actr3d.recording.schema import COLUMNS, FORMAT, LEFT, SAME_AS, SCHEMA, is_of_simulation
+from actr3d.recording.schema import COLUMNS, FORMAT, SCHEMA
 from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
 from actr3d.values import shortened

@@ -14,8 +14,8 @@ from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.forks import detach_in_copies
-from actr3d.recording.facts import check_fact
-from actr3d.recording.schema import FORMAT, LEFT, SAME_AS, is_of_simulation, versions
+from actr3d.recording.facts import LEFT, SAME_AS, check_fact, is_of_simulation
+from actr3d.recording.schema import FORMAT, versions
 from actr3d.recording.writer import Answer, CommandRow, NoWriter, State, Writer
 from actr3d.trace import TraceEvent
 

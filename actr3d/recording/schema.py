@@ -9,19 +9,6 @@ from importlib.metadata import PackageNotFoundError, version
 FORMAT = "actr3d recording 4"
 """The version of the file format: the value of the fact `form`, without which a file is not a recording."""
 
-OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
-"""Facts that every recording writes itself."""
-
-LEFT = "left"
-"""The value of the fact `ended` if the user left the run before its end. All other values mean that the run ended by itself: `end` and
-`exit` (`SystemExit`) of programs; `stop`, `done` and `limits` of a simulation that a file builds, see `RunReport`. A run that raised
-anything else has the fact `failed` instead; a run that was interrupted has neither."""
-
-SIMULATION = "simulation {}"
-"""The name of the fact of each simulation of a program, by its number: its compiled scene (`compiled`) and its `world` at its start, and
-its `period_us`, as in a recording of that simulation alone; or only `same_as`, the name of such a fact with the same values."""
-SAME_AS = "same_as"
-
 SCHEMA = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",
     "CREATE TABLE events (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data TEXT NOT NULL, checksum BLOB NOT NULL)",
@@ -56,11 +43,6 @@ COLUMNS: dict[str, tuple[type, ...]] = {
     "commands": (int, int, int, str),
 }
 """The tables that are written row by row, and the types of their columns without the last one, the checksum."""
-
-
-def is_of_simulation(name: str) -> bool:
-    """Returns whether a fact is that of a simulation of a program."""
-    return name.startswith(SIMULATION.format(""))
 
 
 @cache

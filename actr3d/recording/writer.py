@@ -18,9 +18,10 @@ from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.errors import RecordingError, reason_of
 from actr3d.recording.checksums import Checksums
+from actr3d.recording.facts import LEFT
 from actr3d.recording.key import make_key, seal
 from actr3d.recording.opening import COMPANIONS
-from actr3d.recording.schema import COLUMNS, LEFT, SCHEMA
+from actr3d.recording.schema import COLUMNS, SCHEMA
 from actr3d.replacing import creating
 from actr3d.trace import TraceEvent
 from actr3d.values import escape_surrogates, plain_to_json

@@ -6,26 +6,11 @@ import json
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from actr3d.recording.facts import OF_END
 from actr3d.values import shortened
 
 SHOWN = 200
 """The maximum length of a value in a message [characters]."""
-END = ("failed", "ended", "whole")
-"""The facts of how a run ended."""
-CHECKED_BEFORE = frozenset({"form", "versions"})
-"""Facts that are not compared here: a file of another format is not opened, and other versions are refused or allowed before the run."""
-UNCHECKED = frozenset({"branched", "origin", "ancestors"})
-"""Facts that a replay cannot check. They describe a branch of the workbench: the time at which it branches (`branched`), the recording from
-which it branches (`origin`, by its first name), and the recordings from which that one branches, each with its time (`ancestors`)."""
-NAMED = "named"
-"""The name that the workbench gave the file. Branches know the recording by it, so that the file can be renamed. It is not compared."""
-REACHED = "reached"
-"""The time that the runs of a program have reached together in the workbench [s]: after the last event, it shows nowhere else. It is not
-compared, because the command line does not record it."""
-PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended", NAMED, REACHED}) | CHECKED_BEFORE | UNCHECKED
-"""The facts that the recording of a program can have."""
-BUILT = PROGRAM | {"whole", "parameters", "built", "program_seed", "period_us", "timestep_us", "scene", "compiled", "world"}
-"""The facts that the recording of a simulation that a model file builds can have."""
 
 
 def program_facts(file: str, source: str, seed: int | str | None, until: float | None) -> dict[str, Any]:
@@ -58,7 +43,7 @@ def first_difference(recorded: Mapping[str, Any], repeated: Mapping[str, Any], i
         repeated: Those of the repeated run.
         ignored: The names of facts that are not compared.
     """
-    names = sorted({*recorded, *repeated} - {*ignored}, key=lambda name: (END.index(name) if name in END else len(END), name))
+    names = sorted({*recorded, *repeated} - {*ignored}, key=lambda name: (OF_END.index(name) if name in OF_END else len(OF_END), name))
     for name in names:
         was, is_now = json.dumps(recorded.get(name)), json.dumps(repeated.get(name))
         if json.loads(was) != json.loads(is_now):

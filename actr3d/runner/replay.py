@@ -16,8 +16,8 @@ from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.output import printing_nothing
 from actr3d.recording import Recorded
-from actr3d.recording.schema import is_of_simulation
-from actr3d.runner.facts import CHECKED_BEFORE, END, NAMED, REACHED, UNCHECKED, built_facts, first_difference, program_facts
+from actr3d.recording.facts import FACTS, OF_END, is_of_simulation
+from actr3d.runner.facts import built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges, of_user
 from actr3d.runner.replay_diff import Comparator, Comparison, Differs
@@ -237,12 +237,12 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     """Returns the names of the facts that are not compared, and a note that lists those of the recording that cannot be checked."""
     then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
-    named, silent = set(UNCHECKED), {*CHECKED_BEFORE, NAMED, REACHED}
+    named, silent = ({name for name, fact in FACTS.items() if fact.replay == does} for does in ("notes", "ignores"))
     simulations = {name for name in {*then, *now} if is_of_simulation(name)}
     if not simulations & then.keys():  # earlier versions have not recorded them
         silent |= simulations
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
-        named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
+        named |= {"sources"} | (then.keys() - now.keys() - {*OF_END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
     if not recorded.finished:
         # The recorded run did not end by itself, so an end of the replay is a difference.
@@ -270,7 +270,7 @@ def _recorded_end(recorded: Recorded) -> str | None:
     if period is None:
         for event in recorded.events():
             last = event.time_us
-    at = facts.get(REACHED, seconds(last)) if period is None else seconds(recorded.ticks * period)
+    at = facts.get("reached", seconds(last)) if period is None else seconds(recorded.ticks * period)
     if recorded.failed:
         return f"the run failed after {at:g} s ({facts['failed']})"
     if facts.get("ended") is None and facts.get("whole") and not facts.get("built"):

@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from actr3d.errors import RecordingError, UntrustedError
 from actr3d.recording import Recorded
-from actr3d.recording.schema import is_of_simulation, versions
-from actr3d.runner.facts import BUILT, PROGRAM
-
-_NEEDED = {
-    "program": ("file", "sources", "seed", "until"),
-    "simulation": ("seed", "period_us", "timestep_us", "scene"),
-    "built": ("file", "sources", "parameters", "program_seed", "until"),
-}
-"""Facts without which a run cannot be run again; a simulation that a model file builds needs those of `built`, too."""
+from actr3d.recording.facts import FACTS, fact_of
+from actr3d.recording.schema import versions
 
 
 def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> None:
@@ -44,16 +37,15 @@ def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> N
 
 def _check_facts(recorded: Recorded) -> None:
     facts = recorded.facts
-    needed = _NEEDED[facts["kind"]] + (_NEEDED["built"] if facts.get("built") else ())
+    kinds = ("simulation", "built") if facts["kind"] == "simulation" and facts.get("built") else (facts["kind"],)
+    needed = [name for kind in kinds for name, fact in FACTS.items() if kind in fact.needed_by]
     missing = [f"'{name}'" for name in needed if name not in facts]
     if not missing and "file" in needed and facts["file"] not in facts["sources"]:
         missing = [f"the source of '{facts['file']}'"]
     if missing:
         raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
-    is_program = facts["kind"] == "program"
-    if is_program or facts.get("built"):
-        known = PROGRAM | {name for name in facts if is_of_simulation(name)} if is_program else BUILT
-        unknown = sorted(facts.keys() - known)
+    if kinds != ("simulation",):  # the program that makes one may give any facts
+        unknown = sorted(name for name in facts if (fact := fact_of(name)) is None or fact.only not in (None, *kinds))
         if unknown:
             names = ", ".join(f"'{name}'" for name in unknown)
             raise RecordingError(f"the recording '{recorded.path}' cannot be run again: such a run cannot have the fact {names}")

@@ -9,7 +9,7 @@ from actr3d.actr.changes import AgentChange
 from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.change import CHANGES
-from actr3d.recording.schema import SIMULATION
+from actr3d.recording.facts import SIMULATION
 from actr3d.simulation.commands import Command
 from actr3d.simulation.surroundings import scene_facts
 from actr3d.trace import Run, Trace, TraceEvent, renumbered, with_number

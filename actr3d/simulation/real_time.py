@@ -9,6 +9,7 @@ from typing import Literal
 from actr3d.clock import seconds
 
 SimulationEnding = Literal["seconds", "until", "stop", "done", "limits"]
+"""What ends a call of `run`; see `RunReport`."""
 
 
 @dataclass(frozen=True, kw_only=True)

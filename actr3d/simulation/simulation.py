@@ -21,7 +21,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError, SimulationError
 from actr3d.notebook import show_in_notebook
 from actr3d.recording import Recording
-from actr3d.recording.schema import OWN_FACTS
+from actr3d.recording.facts import FACTS
 from actr3d.simulation.agents import Factory
 from actr3d.simulation.commands import Command
 from actr3d.simulation.event_log import EventLog
@@ -563,6 +563,7 @@ def _facts_of(own: Mapping[str, Any], given: Mapping[str, Any], factories: Itera
     Raises:
         RecordingError: If the user gives a fact that a recording sets itself.
     """
-    if taken := sorted({*own, *OWN_FACTS} & given.keys()):
+    written = {*own, *(name for name, fact in FACTS.items() if fact.always or fact.of_end)}
+    if taken := sorted(written & given.keys()):
         raise RecordingError(f"a recording sets '{taken[0]}' itself; give that fact another name")
     return {"kind": "simulation", **own, **given, "sources": given.get("sources") or _sources_of(factories)}

@@ -14,7 +14,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.recording import Recording
-from actr3d.runner.facts import REACHED, program_facts
+from actr3d.runner.facts import program_facts
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.trace_kinds import GROUPS, KINDS
@@ -382,7 +382,7 @@ def test_several_downloads_at_once_arrive_whole_and_a_failed_one_is_reported(
         RunLimits(trace=Trace(), recorder=recording),
     ):
         Simulation(Scene(parts=(Floor(), Mannequin()))).run(0.1)
-        recording.fact(REACHED, 0.1)
+        recording.fact("reached", 0.1)
     spare = recorded(workbench, "counting.py")
     page.get_by_role("button", name="Read the list again").click()
     page.get_by_label("Search recordings").fill("trials.py")

@@ -359,6 +359,7 @@ def test_a_run_is_recorded_once_at_a_time(tmp_path: Path) -> None:
         ({"seed": 99}, "a recording sets 'seed' itself; give that fact another name"),
         ({"kind": "program"}, "a recording sets 'kind' itself"),
         ({"form": "mine"}, "a recording sets 'form' itself"),
+        ({"failed": "no"}, "a recording sets 'failed' itself"),
         ({"subject": object()}, "the fact 'subject' cannot be recorded, only numbers, texts, and lists and dicts of these"),
         ({"subject": {"a": [{1: 2}]}}, r"the fact 'subject' cannot be recorded, .*: the keys of a dict must be texts \(got 1\)"),
     ],

@@ -15,7 +15,7 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.recording import Recorded, Recording, reader
-from actr3d.recording.schema import SIMULATION
+from actr3d.recording.facts import SIMULATION
 from actr3d.runner.facts import program_facts
 from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import Change, forge

@@ -7,7 +7,6 @@ from pathlib import Path
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recording
-from actr3d.runner.facts import NAMED
 from workbench.retention import new_branch, superfluous_branches
 from workbench.time_text import time_text
 from workbench.worker.controlled_run import LossError
@@ -61,7 +60,7 @@ class KeptBranch:
             # The copy is of the run as it was. If the run branched from another recording after the present moment, the copy has that
             # branch point, and keeps the run's own facts.
             tie = {} if self._left_later else {"branched": self._at, "origin": origin, "ancestors": self._ancestors}
-            recording.copy_to(path, **{NAMED: path.stem, **tie})
+            recording.copy_to(path, named=path.stem, **tie)
         except RecordingError as error:
             return f"it cannot be kept ({error.reason or error})"
         self._branch = path

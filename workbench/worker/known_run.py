@@ -13,7 +13,6 @@ import msgspec
 from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
 from actr3d.recording.writer import State as RecordedState
-from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
 from workbench.event_curves import EventCurves
 from workbench.event_log import MAX_EVENTS
@@ -59,7 +58,7 @@ class KnownRun:
             if keep is not None:
                 for state in recorded.states():
                     keep(state)
-        self.time = max(time, microseconds(self.facts.get(REACHED, 0)), self.ticks * self.facts.get("period_us", 0))
+        self.time = max(time, microseconds(self.facts.get("reached", 0)), self.ticks * self.facts.get("period_us", 0))
         """The duration of the recording, summed over all its runs [us]."""
 
     @property

@@ -24,7 +24,7 @@ from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
 from actr3d.recording.writer import State as RecordedState
-from actr3d.runner.facts import NAMED, REACHED, program_facts
+from actr3d.runner.facts import program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
@@ -221,7 +221,7 @@ class ProgramRun(ControlledRun):
         try:
             if start.record is not None:
                 facts = program_facts(start.path, self._source, self._seed, None)
-                record = partial(Recording, start.record, {**facts, NAMED: Path(start.record).stem})
+                record = partial(Recording, start.record, {**facts, "named": Path(start.record).stem})
                 self._begin_recording(record, may_fail=start.recorded is not None)
             while not controller.leaving:
                 self._run_once()
@@ -698,7 +698,7 @@ class ProgramRun(ControlledRun):
         return self._seek_to == wanted
 
     def flush(self) -> None:
-        self._record(**{REACHED: seconds(self._furthest)})
+        self._record(reached=seconds(self._furthest))
         super().flush()
 
     def finish_output(self) -> None:

@@ -17,7 +17,6 @@ from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
 from actr3d.output import ModelOutput
-from actr3d.runner.facts import NAMED
 from actr3d.trace import Trace
 from actr3d.values import plain_to_json, to_json
 from workbench.worker.channel import Channel
@@ -271,7 +270,7 @@ class RunController:
         before = [[facts["origin"], facts["branched"]], *facts.get("ancestors", ())] if facts.get("origin") else []
         self.give_up_recording()
         # First, as pages list recordings again when they hear of the branch.
-        self.run.become_branch(facts.get(NAMED, recording), at, before)
+        self.run.become_branch(facts.get("named", recording), at, before)
         self.channel.post(Branched(recording=recording, at=at, until=until))
 
     def give_up_recording(self) -> bool:

@@ -17,7 +17,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.configuration import Live
 from actr3d.errors import SimulationError
-from actr3d.runner.facts import NAMED, built_facts
+from actr3d.runner.facts import built_facts
 from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.model_stdout import BuiltOutput
 from actr3d.runner.traceback_report import failure
@@ -104,7 +104,7 @@ class SimulationRun(ControlledRun):
         simulation.traced()
         if start.record is not None:
             facts = built_facts(start.path, start.source, parameters, limits.program_seed, limits.until, helpers.loaded)
-            record = partial(simulation.record, start.record, **{**facts, NAMED: Path(start.record).stem})
+            record = partial(simulation.record, start.record, **{**facts, "named": Path(start.record).stem})
             self._begin_recording(record, may_fail=start.recorded is not None)
             helpers.on_load = lambda loaded: self._record(helpers=loaded)  # an agent may import one later
         if start.recorded is not None:

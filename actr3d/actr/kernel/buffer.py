@@ -9,9 +9,8 @@ from typing import Any, Final, NamedTuple, cast
 
 from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, Chunk, Slot, plain_text
 from actr3d.actr.chunks.pattern import MISSING, Missing
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import Model, chosen_profile
 from actr3d.actr.kernel.parameters import named_parameters
-from actr3d.actr.kernel.profile import Profile
 from actr3d.actr.kernel.tracing import lasting_slots, traceable
 from actr3d.errors import ChunkError, did_you_mean, followed
 from actr3d.trace import Data, Trace
@@ -92,7 +91,7 @@ class Buffer(Model):
                 for harvester in [one for one in harvesters if one.buffer is self] or harvesters:
                     harvester.collect(chunk)
                 return
-            profile: Profile | None = above.__dict__.get("_profile")
+            profile = chosen_profile(above)
             if profile is not None and not profile.harvest:
                 return
             above = above.parent

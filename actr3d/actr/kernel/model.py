@@ -57,7 +57,7 @@ class Model(TreeNode):
     _auto_run_start = True
     _init_log: Any = None
     _profile: Profile | None = None
-    """The profile of the model, if it or one above it has chosen one; see `profile_of`."""
+    """See `chosen_profile`."""
     _setters: frozenset[str] = frozenset()
     """The attributes that the class's own properties set."""
     _slots: frozenset[str] = frozenset()
@@ -157,7 +157,7 @@ class Model(TreeNode):
     def _follow(self, parent: Model | None) -> None:
         """Uses the parent's profile unless the model has its own; subclasses may extend this."""
         if self._profile is None and parent is not None:
-            self.__dict__["_profile"] = parent._profile
+            self.__dict__["_profile"] = chosen_profile(parent)
             if profile_of(parent).whole_milliseconds:
                 self.sch.round_ms = True
 
@@ -437,6 +437,11 @@ def ensure_converted(model: Model, parent: Model | None = None) -> None:
     """Converts a model, as a child of `parent` if given, unless it has been converted before."""
     if not is_converted(model):
         model._convert(parent)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+
+
+def chosen_profile(model: Model) -> Profile | None:
+    """Returns the profile that a model, or one above it, has chosen; None if none has."""
+    return model._profile  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def profile_of(model: Model) -> Profile:

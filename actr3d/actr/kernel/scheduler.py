@@ -34,9 +34,6 @@ MAX_REMAINDERS = 32
 in the current delay, so that no error is lost. A single sum of all rounding errors would be simpler, but would shift the times of
 random delays by a microsecond: printed with few digits, some would then differ from python_actr's."""
 
-Ending = Literal["limit", "until", "stop", "done"]
-"""What ended a run: its own limit, the limits of the program, `stop`, or that no events were left."""
-
 
 class Scheduler:
     """The clock and the event queue of one run; all models below one top model share it.
@@ -55,8 +52,8 @@ class Scheduler:
         """The rounding errors of the delays that led to the current event, by delay [us]. The next equal delay that follows from this event
         includes the error, so that a series of equal delays does not drift: 60 times 1/60 s is 1 s. The times of retrievals, which
         depend on activations, are rounded independently."""
-        self.ended_by: Ending = "done"
-        """What ended the latest run."""
+        self.ended_by: Literal["limit", "until", "stop", "done"] = "done"
+        """What ended the latest run: its own limit, the limits of the program, `stop`, or that no events were left."""
         self.bound: dict[str, Any] | None = None
         """The bindings of the production that fired last; `?name` in a chunk's text refers to these."""
         self.fired: Any = None
