@@ -19,7 +19,8 @@ unit task *turn*, interrupts it before a narrow doorway:
 
 The three variants
 ------------------
-The `predictive` variant is described in predictive_walker.py: no margin and no ratio is put into it.
+The `predictive` variant is described in predictive_walker.py: no margin and no ratio is a rule of it, and one number is fitted to a ratio
+of people.
 
 The `descriptive` variant (the default) looks before it turns. It turns only if the opening is narrower than 1.30 times its width. The turn
 starts 1.6 s before the wall; hips and legs turn with the shoulders, until the room at the sides is 0.30 of the shoulder width, that
@@ -52,7 +53,7 @@ What to try
 - `condition = "fast"`: walks and turns faster.
 - `variant = "replication", aperture = 0.7`: the original model turns even here.
 - `margin = 0, noise = 0.05`: a careless walker with poor eyes.
-- `bar = 0.6, aperture = 0.6`: a walker with a bar in both hands.
+- `bar = 0.6, aperture = 0.7`: a walker with a bar in both hands, which it turns too; at 0.6 it declines, although people pass.
 - `body = "known", aperture = 0.45`: sets out at once.
 - `start_aside = 0.3`: a start that is not in line with the doorway. This walker cannot steer: it walks into the wall. The
   `predictive` one can.

@@ -60,7 +60,9 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     traces = agent.sch.traces
     trace = next((one for one in traces if one.level == "all" and one.keep), None)
     if trace is None:
-        raise ParameterError("explain(at): only a run traced from before that time contains its past; call traced() before the run")
+        raise ParameterError(
+            "explain(at): only a run traced at the level 'all' from before that time contains its past; call traced() before the run"
+        )
     if time > agent.sch.now_us:
         raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
     top = top_of(agent)

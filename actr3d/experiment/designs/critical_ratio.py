@@ -15,7 +15,8 @@ CRITICAL = 1.30
 def critical_ratio() -> Design:
     """Walking through doorways of 1.30 shoulder widths, at normal speed: half of the passages should be turned.
 
-    That is the definition of the critical ratio. The free parameter of the `predictive` walker is fitted to this one number.
+    That is how we read «the ratio below which people turn»: the ratio is that of people over all groups and speeds, the half is our
+    assumption. The free parameter of the `predictive` walker is fitted to this one number.
     """
     return Design(
         model="aperture_passage.py",

@@ -19,7 +19,8 @@ GROUPS = {
 def warren_whang_1987() -> Design:
     """Walking through doorways: small and large people, normal and fast, eight widths (Warren & Whang 1987, experiment 1).
 
-    The speeds are the means of the groups. The number of trials is that of the original ACT-R 3D's simulation.
+    The speeds are the means of the groups. There are 60 trials of each participant in each cell, twice those of the original
+    ACT-R 3D's simulation.
     """
     factors = {"aperture": APERTURES, "condition": ("normal", "fast")}
     return Design(
