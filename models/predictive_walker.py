@@ -1,11 +1,12 @@
 """A person walks through a doorway, and decides from experience how far to turn the shoulders.
 
 No ratio and no margin is a rule of this model. One number, the cost of contacts, is fitted to one ratio of people: half of the passages of
-small walkers at 1.30 shoulder widths, at normal speed, should be turned. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
-passages how much wider than its body the doorway looked, in widths of its own shoulders, how fast it walked, and what came of it: nothing, a
-brush, or a hit, and how hard. Memories hold both widths and the turn, too, but only the room, their difference, and the speed are compared.
-We assume that room is compared in shoulder widths. Almost from this assumption alone it follows that large and small people turn alike at
-the same ratio of doorway and shoulders (`units = "metres"` shows what happens otherwise).
+small walkers at 1.30 shoulder widths, at normal speed, should be turned. The walker has passed doorways before, with empty hands or with a
+bar as now. It remembers of 150 passages how much wider than its body the doorway looked, in widths of its own shoulders, how fast it
+walked, and what came of it: nothing, a brush, or a hit, and how hard. Memories hold both widths and the turn, too, but only the room,
+their difference, and the speed are compared. We assume that room is compared in shoulder widths. Almost from this assumption alone it
+follows that large and small people turn alike at the same ratio of doorway and shoulders (`units = "metres"` shows what happens
+otherwise).
 
 For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
 what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of
