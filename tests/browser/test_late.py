@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
-from tests.helpers.page import choose, drawn, duplicate, holding, open_tab, shows, until
+from tests.helpers.page import choose, drawn, duplicate, holding, open_tab, say, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -607,6 +607,24 @@ def test_a_run_that_was_ended_while_there_was_no_connection_is_opened_again(page
     shows(page, "#time", "t = 0.00 s")
     page.click("#run")
     shows(page, "#status", "ended")
+
+
+def test_a_page_that_missed_a_change_and_its_undoing_explains_the_run_as_it_is_now(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="productions")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", r"0\.05 s")
+    page.locator(".production-names").get_by_text("start_counting").click()
+    other = page.context.new_page()
+    other.goto(page.url)
+    shows(other, "#time", r"0\.05 s")
+    say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:first"})
+    expect(page.get_by_role("table", name="Conditions of start_counting")).to_contain_text("found 'first'")
+    wire.cut()
+    say(other, type="undo")
+    say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:second"})
+    expect(page.get_by_role("table", name="Conditions of start_counting")).to_contain_text("found 'second'")
 
 
 @pytest.mark.slow
