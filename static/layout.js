@@ -36,13 +36,13 @@ const isAreaThere = (area) => isWhole && area in AREAS && (area !== "scene" || h
 
 const notThere = (area) => (isWhole && area === "scene" ? "This model has no 3D view." : "This window shows one panel.");
 
-const ROWS = 336; // the height of the default rows of a model with a body [px]
+const ROWS = 344; // the height of the default rows of a model with a body [px]
 const LEAST = 120; // with some rows of the timeline [px]
 const OTHERS = 400; // the height of everything else on a low page, where bar and tabs have two lines each [px]
 /** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
 export const panelsWidth = ofKind("side width", embedded === null ? Math.max(784, Math.round(0.38 * innerWidth)) : Math.round(0.45 * innerWidth));
 /** The height of the timeline [px]. By default, it leaves the panels a usable height on a low page. */
-export const timelineHeight = ofKind("timeline height", Math.round(Math.max(LEAST, Math.min(0.42 * innerHeight, innerHeight - OTHERS, Math.max(ROWS, 0.34 * innerHeight)))));
+export const timelineHeight = ofKind("timeline height", Math.round(Math.max(LEAST, Math.min(0.43 * innerHeight, innerHeight - OTHERS, Math.max(ROWS, 0.34 * innerHeight)))));
 /** Whether the panels are on the left. */
 export const swapped = remembered("swapped sides", false);
 const collapsed = ofKind("collapsed", []);

@@ -249,7 +249,7 @@ function update() {
       const { resolve, reject } = waiting.get(reply.id) ?? {};
       waiting.delete(reply.id);
       if (reply.error === null) resolve?.(reply.result);
-      else reject?.(Object.assign(new Error(reply.error), { loses: reply.loses }));
+      else reject?.(Object.assign(new Error(reply.error), { loses: reply.loses, field: reply.field }));
     }
   }
 }
@@ -257,7 +257,8 @@ function update() {
 /** Functions that send what waits for an earlier answer; it is sent before any other command. */
 export const unsent = new Set();
 
-/** Sends a command or a question; returns its result, or throws an Error with the reason, with `loses` if only because something would be lost. */
+/** Sends a command or a question; returns its result, or throws an Error with the reason, with `loses` if only because something would be lost,
+ * and with the `field` because of whose value it was refused: the message begins with the name of the field. */
 export function request(what) {
   return new Promise((resolve, reject) => {
     if (shown === null || socket?.readyState !== WebSocket.OPEN) {

@@ -35,12 +35,12 @@ export const hurried = computed(() => running.value && state.value.wanted === nu
 export const shownRecording = computed(() => session.value?.recording ?? (session.value?.branched ? null : session.value?.recorded) ?? null);
 /** Whether other pages show the run, too. */
 export const isShared = computed(() => (session.value?.watching ?? []).some((name) => name !== me.value));
-/** The run of the newest state: until a new run sends its first state, the page shows that of the previous run. */
-const stated = signal(0);
+/** The run and epoch of the newest state: until a new run sends its first state, the page shows that of the previous run. */
+const stated = signal({ run: 0, epoch: 0 });
 /** Whether there is a run that can answer questions. */
-export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null && stated.value === session.value.run);
-/** The moment that is shown, as a text that is unique for each moment. */
-export const moment = computed(() => `${session.value?.id} ${stated.value} ${state.value?.tick} ${state.value?.events}`);
+export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null && stated.value.run === session.value.run);
+/** The moment that is shown, as a text that is unique for each moment, also of a run whose past was changed. */
+export const moment = computed(() => [session.value?.id, stated.value.run, stated.value.epoch, state.value?.tick, state.value?.events].join(" "));
 
 /** The run and the number of the known events, for a new connection. */
 export const known = { run: 0, epoch: 0 };
@@ -67,7 +67,7 @@ function takeOne(message) {
   history.value = `${session.value?.id} ${message.run} ${message.epoch}`;
   if ("state" in message) {
     state.value = message.state;
-    stated.value = message.run;
+    stated.value = { run: message.run, epoch: message.epoch };
   }
   if (message.events) events.value = withEvents(events.value, message.events);
   if (message.notices) {
@@ -203,7 +203,7 @@ export function forget() {
     state.value = null;
     events.value = { list: [], first: 0, missing: 0, cut: false };
     notices.value = [];
-    stated.value = 0;
+    stated.value = { run: 0, epoch: 0 };
     Object.assign(known, { run: 0, epoch: 0 });
     history.value = "";
   });

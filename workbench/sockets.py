@@ -162,15 +162,17 @@ class _Page:
 
     async def _carry_out(self, session: Any, feed: Feed, request: protocol.Request) -> None:
         reply = await request.command.submit(session, self._name)
-        feed.reply(_reply(request.id, reply.result, reply.error, loses=reply.loses))
+        feed.reply(_reply(request.id, reply.result, reply.error, loses=reply.loses, field=reply.field))
 
     async def _refuse(self, problem: str, **what: str | int | None) -> None:
         """Says why something is not done: the `id` of a request, or the `session` that cannot be shown."""
         await self._websocket.send_text(msgspec.json.encode({"type": "refused", "error": problem, **what}).decode())
 
 
-def _reply(number: int | None, result: bytes = b"null", error: str | None = None, *, loses: bool = False) -> bytes:
-    return msgspec.json.encode({"id": number, "result": Raw(result), "error": error, "loses": loses})
+def _reply(
+    number: int | None, result: bytes = b"null", error: str | None = None, *, loses: bool = False, field: str | None = None
+) -> bytes:
+    return msgspec.json.encode({"id": number, "result": Raw(result), "error": error, "loses": loses, "field": field})
 
 
 def _number_of(text: str | None) -> int | None:

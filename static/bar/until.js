@@ -37,10 +37,9 @@ function missing() {
   return kind.value === "buffer" && !buffer.value ? { field: "buffer", text: "enter the name of a buffer" } : null;
 }
 
-/** Returns the problem that an error of the server states: the message begins with the field, unless it is about none. */
-function problemOf({ message }) {
-  const [, field = null, text = message] = /^(time|production|buffer|pattern|contact): (.*)$/s.exec(message) ?? [];
-  return { field, text };
+/** Returns the problem that an error of the server states, without the name of the field, beside which it is shown. */
+function problemOf({ message, field = null }) {
+  return { field, text: field === null ? message : message.slice(`${field}: `.length) };
 }
 
 commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));

@@ -6,7 +6,7 @@ import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { plain, Prose } from "../parts/prose.js";
-import { call } from "../server.js";
+import { AGAIN, call } from "../server.js";
 import { session } from "../store.js";
 import { shown, startExperiment } from "./list.js";
 import { durationText, levelsText, readLevels } from "./wording.js";
@@ -254,7 +254,20 @@ function Entry({ design, description, usual }) {
 export function NewExperiment() {
   const problem = useSignal(null);
   useLayoutEffect(() => {
-    call("GET", "/api/designs").then((answer) => (known.value = answer)).catch((error) => (problem.value = error.message));
+    let timer = 0;
+    const leave = new AbortController();
+    async function read() {
+      try {
+        known.value = await call("GET", "/api/designs", undefined, leave.signal);
+        problem.value = null;
+      } catch (error) {
+        if (leave.signal.aborted) return;
+        problem.value = error.message;
+        timer = setTimeout(read, AGAIN);
+      }
+    }
+    read();
+    return () => (clearTimeout(timer), leave.abort());
   }, []);
   const isPicked = useSignal(false);
   function choose(id) {
@@ -276,6 +289,8 @@ export function NewExperiment() {
       ${known.value ? html`<${DesignChoice} design=${design} choose=${choose} />` : null}
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
-    ${chosen ? html`<${Entry} key=${design} design=${design} description=${chosen.description} usual=${usual} />` : html`<div class="new"></div>`}
+    ${chosen
+      ? html`<${Entry} key=${design} design=${design} description=${chosen.description} usual=${usual} />`
+      : html`<div class="new">${problem.value ? null : html`<p class="late" role="status">Reading the designs …</p>`}</div>`}
   `;
 }

@@ -19,10 +19,8 @@ import { chooseLive } from "../bar/models.js";
 import { notify, session, shownRecording as shown } from "../store.js";
 import { computed, html, useEffect, useRef } from "../vendor/preact.js";
 import { commandText } from "./commands.js";
-import { placeOf } from "./draw.js";
-import { column } from "./rows.js";
+import { placeOf, viewOf } from "./draw.js";
 import { furthest } from "./seek.js";
-import { span } from "./view.js";
 
 const MAX_CHARACTERS = 300; // of the change that a tooltip shows
 
@@ -77,7 +75,7 @@ commandsOf(() =>
 
 function Row({ run, depth, width }) {
   const mine = run.id === shown.value;
-  const view = { column: column.value, width, span: span.value };
+  const view = viewOf(width);
   const inside = (x) => Math.min(Math.max(x, view.column), width);
   const end = endOf(run);
   const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];

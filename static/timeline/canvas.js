@@ -7,7 +7,7 @@ import { events, running, session, state, history } from "../store.js";
 import { dark } from "../theme.js";
 import { reach } from "./branches.js";
 import { chosen, names, plots } from "./curves.js";
-import { drawPresent, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
+import { drawPresent, drawTimeline, placeOf, secondsPerPixel, timeOf, viewOf } from "./draw.js";
 import { begin, partAt, press, turn } from "./pointer.js";
 import { Painter } from "./painter.js";
 import { lanes, lanesVersion } from "./record.js";
@@ -27,11 +27,9 @@ export function drawing(whole = false) {
   const rows = layout(filter.peek());
   const { width, height: seen } = size.peek();
   return {
-    width: whole ? Math.max(800, width) : width,
+    ...viewOf(whole ? Math.max(800, width) : width),
     height: whole ? rows.height : seen,
-    column: column.peek(),
     scroll: whole ? 0 : scroll.peek(),
-    span: span.peek(),
     layout: rows,
     end: furthest.peek(),
     present: present.peek(),
@@ -46,7 +44,7 @@ export function drawing(whole = false) {
 
 /** Returns the position of the playhead's label, beside which the playhead may be at the edges [px]; null if it is out of view. */
 function labelOfNow() {
-  const view = { column: column.peek(), width: size.peek().width, span: span.peek() };
+  const view = viewOf(size.peek().width);
   const x = placeOf(present.peek(), view);
   if (x < view.column - 1 || x > view.width + 1) return null;
   const width = Math.ceil(widthOf(runTimeText(present.peek()), { size: 10, bold: true })) + 2 * AROUND;
@@ -69,7 +67,7 @@ function paintPresent(canvas) {
 
 /** Places the playhead with its label, and the veil over the future. */
 function place(stage) {
-  const view = { column: column.value, width: size.value.width, span: span.value };
+  const view = viewOf(size.value.width);
   const inside = (x) => Math.min(Math.max(x, view.column), view.width);
   const [now, far] = [placeOf(present.value, view), placeOf(furthest.value, view)];
   const [veil, end, head, label] = ["veil", "end", "head", "now"].map((part) => stage.querySelector(`.timeline-${part}`));
@@ -118,7 +116,7 @@ function lookUp(event, stage) {
   const { left, top } = stage.getBoundingClientRect();
   const [x, y] = [event.clientX - left, event.clientY - top];
   stage.dataset.part = partAt(x, y);
-  const view = { column: column.peek(), width: size.peek().width, span: span.peek() };
+  const view = viewOf(size.peek().width);
   const row = y < AXIS ? null : layout(filter.peek()).rows.find((one) => y + scroll.peek() >= one.y && y + scroll.peek() < one.y + one.height);
   if (!row || (x < view.column && row.plot)) return null;
   if (x < view.column) return { row, time: 0, band: null, named: true };

@@ -7,7 +7,8 @@ import { session } from "../store.js";
 import { chunkCurve, colourOf, headingOf, titleOf } from "./curves.js";
 import { bandText } from "./lanes.js";
 import { firstWhere, nextWhere } from "./search.js";
-import { AXIS, MARGIN, NAME, PLOT } from "./rows.js";
+import { AXIS, column, MARGIN, NAME, PLOT } from "./rows.js";
+import { span } from "./view.js";
 
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
 const THIN = 3; // the width up to which a band is only a stroke [px]
@@ -34,6 +35,11 @@ const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
  * @property {number} known Later times are not known [s].
  * @property {boolean} fetching Whether events are being requested.
  */
+
+/** Returns the part of a scene of a given width [px] that maps times to positions, now: {column, width, span}. */
+export function viewOf(width) {
+  return { column: column.value, width, span: span.value };
+}
 
 /** Returns the position of a time [px]. */
 export function placeOf(time, view) {

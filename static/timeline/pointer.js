@@ -1,10 +1,10 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
 import { reach } from "./branches.js";
-import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
+import { placeOf, secondsPerPixel, timeOf, viewOf } from "./draw.js";
 import { AXIS, chosenColumn, column, plotEndingAt, resize } from "./rows.js";
 import { furthest, goTicks, present, seek } from "./seek.js";
-import { pan, span, zoom } from "./view.js";
+import { pan, zoom } from "./view.js";
 
 const GRIP = 4; // the distance at which the border of the column of names can be dragged [px]
 const HANDLE = 20; // the same for the label of the playhead, in the axis [px]
@@ -21,13 +21,8 @@ export function partAt(x, y) {
   return y < AXIS ? "axis" : "lanes";
 }
 
-/** Returns the view with the sizes needed to compute positions. */
-function sceneOf(stage) {
-  return { column: column.peek(), width: stage.clientWidth, span: span.peek() };
-}
-
 function secondsOf(pixels, stage) {
-  return pixels * secondsPerPixel(sceneOf(stage));
+  return pixels * secondsPerPixel(viewOf(stage.clientWidth));
 }
 
 function placeIn(event, stage) {
@@ -43,7 +38,7 @@ export function begin(event) {
   const there = partAt(x, y);
   if (there === "names") return;
   const resized = there === "height" ? plotEndingAt(y, GRIP) : null;
-  const part = there === "axis" && Math.abs(x - placeOf(present.peek(), sceneOf(stage))) <= HANDLE ? "lanes" : there;
+  const part = there === "axis" && Math.abs(x - placeOf(present.peek(), viewOf(stage.clientWidth))) <= HANDLE ? "lanes" : there;
   const began = x;
   let still = true;
   const move = (moved) => {
@@ -53,7 +48,7 @@ export function begin(event) {
     if (resized) resize(resized.plot, resized.height + toY - y);
     else if (part === "border") chosenColumn.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
     else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), reach.peek());
-    else seek(Math.max(0, timeOf(to, sceneOf(stage))));
+    else seek(Math.max(0, timeOf(to, viewOf(stage.clientWidth))));
     x = to;
   };
   stage.focus({ preventScroll: true, focusVisible: false });
@@ -62,7 +57,7 @@ export function begin(event) {
   if (part === "lanes") move(event);
   stage.onpointermove = move;
   stage.onpointerup = stage.onpointercancel = ({ type }) => {
-    if (part === "axis" && still && type === "pointerup") seek(Math.max(0, timeOf(x, sceneOf(stage))));
+    if (part === "axis" && still && type === "pointerup") seek(Math.max(0, timeOf(x, viewOf(stage.clientWidth))));
     stage.onpointermove = stage.onpointerup = stage.onpointercancel = null;
     delete document.body.dataset.dragging;
   };
@@ -78,7 +73,7 @@ export function turn(event) {
   const unit = event.deltaMode === 1 ? LINE : 1;
   const sideways = Math.abs(event.deltaX) > Math.abs(event.deltaY);
   if (sideways || event.shiftKey) pan(secondsOf((sideways ? event.deltaX : event.deltaY) * unit, stage), present.peek(), reach.peek());
-  else zoom(Math.exp(event.deltaY * unit * NOTCH), timeOf(Math.max(x, column.peek()), sceneOf(stage)), present.peek(), reach.peek());
+  else zoom(Math.exp(event.deltaY * unit * NOTCH), timeOf(Math.max(x, column.peek()), viewOf(stage.clientWidth)), present.peek(), reach.peek());
 }
 
 /** Goes to another time by keys, or scrolls. */

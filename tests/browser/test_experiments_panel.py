@@ -13,7 +13,7 @@ from playwright.sync_api import Page, Route, expect
 
 from actr3d.experiment.report.page import page as report_page
 from tests.helpers.experiments import SLOW_COUNTER, write_experiment
-from tests.helpers.page import open_tab, until
+from tests.helpers.page import answers, holding, open_tab, until
 from tests.helpers.workbench_server import Served
 
 
@@ -91,6 +91,26 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
         report.get_by_role("link", name="CSV").first.click()
     assert download.value.suggested_filename.endswith(".csv")
     assert download.value.path().stat().st_size > 0
+
+
+def test_the_form_says_that_the_list_of_designs_is_late(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments")
+    with holding(page, "**/api/designs", lambda _: True):
+        page.get_by_role("button", name="New experiment").click()
+        expect(page.get_by_text("Reading the designs …")).to_be_visible()
+    expect(page.get_by_label("Design", exact=True)).to_be_visible()
+    expect(page.get_by_text("Reading the designs …")).to_have_count(0)
+
+
+def test_the_form_asks_again_for_a_list_of_designs_that_could_not_be_read(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py", tab="experiments")
+    answers(page, "/api/designs", {"error": "too much is asked at once"}, status=503)
+    page.get_by_role("button", name="New experiment").click()
+    problem = page.get_by_text("The designs cannot be listed: too much is asked at once")
+    expect(problem).to_be_visible()
+    answers(page, "/api/designs", workbench.get("/api/designs").json())
+    expect(page.get_by_label("Design", exact=True)).to_be_visible()
+    expect(problem).to_have_count(0)
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
-from tests.helpers.page import choose, drawn, duplicate, holding, open_tab, shows, until
+from tests.helpers.page import choose, drawn, duplicate, holding, open_tab, say, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -30,10 +30,14 @@ class Wire:
     def __init__(self, page: Page) -> None:
         self.held: list[str] | None = None
         self._only_replies = False
+        self._is_down = False
         page.route_web_socket(re.compile(r"/ws$"), self._join)
         page.reload()
 
     def _join(self, socket: WebSocketRoute) -> None:
+        if self._is_down:
+            socket.close()
+            return
         self._page, self._server = socket, socket.connect_to_server()
         self._server.on_message(self._pass_on)
 
@@ -48,10 +52,14 @@ class Wire:
         else:
             self.held.append(text)
 
-    def cut(self) -> None:
-        """Ends the connection; the page makes another one after a second."""
+    @contextmanager
+    def cut(self) -> Generator[None]:
+        """Ends the connection; the page, which asks for another one every second, gets it afterwards."""
+        self._is_down = True
         self._server.close()
         self._page.close()
+        yield
+        self._is_down = False
 
     @contextmanager
     def holding(self, *, only_replies: bool = False) -> Generator[None]:
@@ -601,12 +609,30 @@ def test_a_run_that_was_ended_while_there_was_no_connection_is_opened_again(page
     page.click("#cycle")
     shows(page, "#time", "0.05 s")
     (session,) = workbench.get("/api/sessions").json()["sessions"]
-    wire.cut()
-    workbench.post(f"/api/sessions/{session['id']}/close")
+    with wire.cut():
+        workbench.post(f"/api/sessions/{session['id']}/close")
     expect(page.locator(".toast")).to_contain_text("was ended while this page had no connection")
     shows(page, "#time", "t = 0.00 s")
     page.click("#run")
     shows(page, "#status", "ended")
+
+
+def test_a_page_that_missed_a_change_and_its_undoing_explains_the_run_as_it_is_now(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="productions")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", r"0\.05 s")
+    page.locator(".production-names").get_by_text("start_counting").click()
+    other = page.context.new_page()
+    other.goto(page.url)
+    shows(other, "#time", r"0\.05 s")
+    say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:first"})
+    expect(page.get_by_role("table", name="Conditions of start_counting")).to_contain_text("found 'first'")
+    with wire.cut():
+        say(other, type="undo")
+        say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:second"})
+    expect(page.get_by_role("table", name="Conditions of start_counting")).to_contain_text("found 'second'")
 
 
 @pytest.mark.slow

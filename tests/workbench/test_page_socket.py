@@ -88,7 +88,20 @@ def test_a_request_may_speak_of_attach(server: Served, session: str) -> None:
         async with await attached(server, session) as socket:
             await socket.send(json.dumps({"id": 7, "command": {"type": "explain", "production": "attach"}}))
             told = await heard(socket, lambda message: "replies" in message)
-            assert told["replies"][0] == {"id": 7, "result": None, "error": "no production 'attach'; there are: none", "loses": False}
+            problem = "no production 'attach'; there are: none"
+            assert told["replies"][0] == {"id": 7, "result": None, "error": problem, "loses": False, "field": None}
+
+    asyncio.run(talk())
+
+
+def test_a_reply_names_the_field_because_of_which_a_command_was_refused(server: Served, session: str) -> None:
+    async def talk() -> None:
+        async with await attached(server, session) as socket:
+            for wanted, field in (({"time": 0}, "time"), ({"production": "trun"}, "production"), ({"pattern": "x"}, None)):
+                await socket.send(json.dumps({"id": 7, "command": {"type": "until", **wanted}}))
+                reply = (await heard(socket, lambda message: "replies" in message))["replies"][0]
+                assert reply["field"] == field
+                assert reply["error"].startswith(f"{field or 'until'}: ")
 
     asyncio.run(talk())
 

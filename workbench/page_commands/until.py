@@ -36,9 +36,10 @@ class Until(PageCommand):
         """Checks, before the run continues, that each condition can occur.
 
         Raises:
-            Actr3dError: If a name is unknown, the pattern is invalid, it names a slot that no chunk can have, or the time has passed; the
-                message begins with the name of the field.
+            FieldError: If a name is unknown, the pattern is invalid, it names a slot that no chunk can have, or the time has passed.
+            Actr3dError: If there is no condition.
         """
+        from workbench.worker.controlled_run import FieldError
         from workbench.worker.slots import check_slots
 
         if not self.model_dump(exclude={"type", "pattern"}, exclude_none=True):
@@ -61,7 +62,7 @@ class Until(PageCommand):
             check_slots(self.pattern or "", sources, names.modules if is_fed else (), start.folder)
         goal = None if self.time is None else round(self.time * MICROSECONDS)
         if goal is not None and goal <= run.clock:
-            raise Actr3dError(f"time: must be after the present one, {time_text(seconds(run.clock))}; a click on the timeline goes back")
+            raise FieldError("time", f"must be after the present one, {time_text(seconds(run.clock))}; a click on the timeline goes back")
         controller.go(
             goal=goal,
             goal_reason="" if self.time is None else f"at {time_text(self.time)}",
@@ -78,8 +79,10 @@ class Until(PageCommand):
 
 @contextmanager
 def _of(field: str) -> Generator[None]:
-    """Begins the message of an error inside the block with the name of a field."""
+    """Makes an error inside the block one of a field."""
+    from workbench.worker.controlled_run import FieldError
+
     try:
         yield
     except Actr3dError as error:
-        raise Actr3dError(f"{field}: {error}") from None
+        raise FieldError(field, str(error)) from None

@@ -25,6 +25,14 @@ class LossError(SimulationError):
     """A change is refused because what lies ahead of it would be lost; see `RunChange.drop`."""
 
 
+class FieldError(SimulationError):
+    """A command is refused because of the value of one of its fields; the message begins with the name of the field."""
+
+    def __init__(self, field: str, problem: str) -> None:
+        super().__init__(f"{field}: {problem}")
+        self.field = field
+
+
 class ControlledRun(ABC):
     """A run that a controller controls."""
 

@@ -234,6 +234,8 @@ class Reply(Message, frozen=True, kw_only=True):
     error: str | None = None
     loses: bool = False
     """Whether it was refused only because something would be lost; see `RunChange.drop`."""
+    field: str | None = None
+    """The field of the command because of whose value it was refused, with whose name `error` begins; None for another reason."""
     line: int | None = None
     """The line of a text that was the reason to refuse a question about it."""
 

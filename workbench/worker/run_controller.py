@@ -20,7 +20,7 @@ from actr3d.output import ModelOutput
 from actr3d.trace import Trace
 from actr3d.values import plain_to_json, to_json
 from workbench.worker.channel import Channel
-from workbench.worker.controlled_run import ControlledRun, LossError
+from workbench.worker.controlled_run import ControlledRun, FieldError, LossError
 from workbench.worker.error_report import describe_error, notice_of
 from workbench.worker.known_run import KnownRun, difference_notice
 from workbench.worker.messages import (
@@ -297,7 +297,8 @@ class RunController:
             self._unanswered.append(message.id)
             raise
         except Exception as error:  # noqa: BLE001 - any error is reported to the sender
-            self.channel.post(Reply(id=message.id, error=describe_error(error), loses=isinstance(error, LossError)))
+            field = error.field if isinstance(error, FieldError) else None
+            self.channel.post(Reply(id=message.id, error=describe_error(error), loses=isinstance(error, LossError), field=field))
             return
         self.channel.post(Reply(id=message.id, result=to_json(result).encode()))
 
