@@ -26,7 +26,7 @@ LAST_LINES = 60
 """How many lines of its messages are kept."""
 PART = 4_000
 """How much of a message is read at a time, and shown at most [characters]."""
-OF_VALUE = re.compile(r"\A--set (\w+): (?:Design(?:, .*?: \1|\.\w+(?:\['.*?'\])?)?: )?")
+OF_VALUE = re.compile(r"\A--set (\w+): (?:Design(?:, .*?: \1|\.\w+(?:\['.*?'\](?:\[\d+\])?)?)?: )?")
 """How the command begins an error about a value that replaces one of the design: with its option, and the place in the design."""
 
 
