@@ -256,12 +256,12 @@ class Design(Configuration):
                 _check_plain(level, f"Design.factors['{name}'][{number}]", name)
             # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
             tidy[name] = [float(f"{one:.12g}") if type(one) is float else one for one in levels]
-            if len(set(map(_key, tidy[name]))) < len(levels):
-                raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
-            texts = {plain_text(level): level for level in reversed(tidy[name])}
-            for level in tidy[name]:
-                if (first := texts[plain_text(level)]) is not level:
-                    raise DesignError(f"Design.factors['{name}']: has two levels with the same text: {first!r} and {level!r}", name)
+            for key, wrong in ((_key, "must name each level once"), (plain_text, "has two levels with the same text")):
+                before: dict[Any, Any] = {}
+                for level in tidy[name]:
+                    if (same := key(level)) in before:
+                        raise DesignError(f"Design.factors['{name}']: {wrong} (got {before[same]!r} and {level!r})", name)
+                    before[same] = level
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
             _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
