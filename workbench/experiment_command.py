@@ -96,16 +96,6 @@ EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExper
 # -- the process
 
 
-def processors() -> int:
-    """Returns the number of processors that an experiment uses by default: a container or a job of a cluster may have fewer than its
-    machine."""
-    try:
-        from dask.system import CPU_COUNT  # as the command has it; loaded when it is needed
-    except ModuleNotFoundError:  # the packages for experiments are optional
-        return os.cpu_count() or 1
-    return CPU_COUNT
-
-
 class ExperimentRunError(Actr3dError):
     """An experiment cannot be run, continued or read as requested."""
 

@@ -31,6 +31,7 @@ from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.experiment.versions import experiment_versions
+from actr3d.processors import processors
 from actr3d.values import to_json
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
             out.line(f"  {name} of {group}: {value}")
     for name, value in facts["settings"].items():
         out.line(f"  {name}: {value}")
-    out.line(f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / _processors():,.0f} s on this computer")
+    out.line(f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / processors():,.0f} s on this computer")
     if ended_early((first["end"], second["end"])):
         out.line("its first trials ", (NOTHING_LEFT, "bold"))
     for number, error in failed:
@@ -167,7 +168,7 @@ def run(
         if before < total:
             with (
                 _stopping() as stop,
-                local_cluster(workers or _processors()) if cluster is None else nullcontext(cluster) as client,
+                local_cluster(workers or processors()) if cluster is None else nullcontext(cluster) as client,
                 _progress(out, "", total) as show,
             ):
                 try:
@@ -255,7 +256,7 @@ def fit(
     def open_cluster() -> Generator[Any]:
         # First the cluster, which may not answer: then no folder is made.
         with (
-            local_cluster(workers or _processors()) if scheduler is None else existing_cluster(scheduler) as client,
+            local_cluster(workers or processors()) if scheduler is None else existing_cluster(scheduler) as client,
             _folder_of_fit(path),
         ):
             yield client
@@ -495,13 +496,6 @@ def _show_failures(store: Store, out: Output) -> None:
     out.line((f"{_trials(store.failures)} failed", "bold red"), " (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
         out.line(f"  {count:,}  {text}")
-
-
-def _processors() -> int:
-    """Returns the number of processors that this process may use; a container or a job of a cluster may have fewer than its machine."""
-    from dask.system import CPU_COUNT  # Dask takes a while to load
-
-    return CPU_COUNT
 
 
 @contextmanager
