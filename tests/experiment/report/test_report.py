@@ -684,6 +684,24 @@ def test_trials_are_counted_by_the_texts_of_a_measure(tmp_path: Path) -> None:
     assert results.rows["rt"].value_counts().to_dict() == {"1": 4, "True": 4, "a": 4}
 
 
+def test_shares_of_the_texts_of_a_measure_are_shown_by_the_first_factor(tmp_path: Path) -> None:
+    def answer(trial: Trial) -> dict[str, Any]:
+        return {"rt": None if trial.repetition == 4 else "yes" if trial.repetition <= trial.values["n"] else "no"}
+
+    design = write_experiment(tmp_path, factors='{"n": [1, 2, 3]}', participants=3, trials=4)
+    results = read_results(store_rows(tmp_path / "out", str(design), answer))
+    (everything, *_) = measure_sections(by_number(results), [])
+    rows = frames(everything.parts)["shares_rt"].to_dict("records")
+    assert [(row["n_"], row["rt"], row["mean"], row["n"], row["trials"]) for row in rows] == [
+        (n, text, share, 3, 12) for n in (1, 2, 3) for text, share in (("no", (3 - n) / 4), ("none", 0.25), ("yes", n / 4))
+    ]
+    (plot,) = (part for part in everything.parts if isinstance(part, Plot))
+    assert [line.get_label() for line in plot.figure.legends[0].get_lines()] == ["rt no", "rt none", "rt yes"]
+    report = write_report(tmp_path / "out").parent
+    assert (report / "tables" / "shares_rt.csv").exists()
+    assert (report / "figures" / "shares_rt.png").exists()
+
+
 def test_a_walker_that_has_not_judged_neither_passes_nor_does_not(tmp_path: Path) -> None:
     def judge(trial: Trial) -> dict[str, Any]:
         if trial.repetition == 1 or trial.columns["participant"] == "small 1":
