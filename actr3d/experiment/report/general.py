@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.design import plain_text
-from actr3d.experiment.human_data import HumanData
+from actr3d.experiment.human_data import HumanData, factor_name
 from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
@@ -246,9 +246,10 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
     found: list[str | Table | Plot | Caution] = []
     for name in results.outcomes:
         by = [key for key in ("group",) if len(results.groups) > 1]
-        rows = results.rows[[*by, name]].fillna({name: "none"})
-        if rows[name].nunique() <= MAX_KINDS:
-            counts = in_order(rows.groupby([*by, name], observed=True).size().rename("trials").reset_index(), by, rows)
+        column = factor_name(name)
+        rows = results.rows[[*by, name]].fillna({name: "none"}).rename(columns={name: column})
+        if rows[column].nunique() <= MAX_KINDS:
+            counts = in_order(rows.groupby([*by, column], observed=True).size().rename("trials").reset_index(), by, rows)
             found.append(Table(name=f"counts_{name}", title=f"Trials by {name.replace('_', ' ')}", frame=counts))
             found += _shares(results, name)
     return found
@@ -260,23 +261,23 @@ def _shares(results: Results, measure: str) -> Iterator[Table | Plot]:
     texts = sorted(rows[measure].unique())
     if layout is None or layout.x == "group" or len(texts) < 2:
         return
-    x, title = layout.x, f"Shares of each {measure.replace('_', ' ')} by {layout.x.replace('_', ' ')}"
+    x, column, title = layout.x, factor_name(measure), f"Shares of each {measure.replace('_', ' ')} by {layout.x.replace('_', ' ')}"
     by = [*(["group"] if len(results.groups) > 1 else []), x]
     of = {text: cell_means(rows.assign(**{measure: (rows[measure] == text) * 1.0}), measure, by) for text in texts}
-    levels: dict[str, Sequence[Any]] = {**results.factors, measure: texts}
-    frame = in_order(pandas().concat([means.assign(**{measure: text}) for text, means in of.items()]), by, rows)
+    levels: dict[str, Sequence[Any]] = {**results.factors, column: texts}
+    frame = in_order(pandas().concat([means.assign(**{column: text}) for text, means in of.items()]), by, rows)
     places, ticks = _axis(levels[x])
     panes: list[Pane] = []
     for group in results.groups:
         source = ("model", "model", frame[frame["group"] == group] if "group" in by else frame)
-        curves = _curves(source, {}, replace(layout, curves=measure), levels, places)
+        curves = _curves(source, {}, replace(layout, curves=column), levels, places)
         panes.append(Pane(title=group if "group" in by else "", curves=curves))
     note = "Shares of the trials of a participant, averaged over participants, with 95 % bootstrap intervals."
     if averaged := [name for name in results.factors if name != x]:
         note += f" Averaged over: {', '.join(averaged)}."
     figure = curves_figure(panes, results.name_with_unit(x), "share of trials", ticks=ticks, from_zero=True)
     yield Plot(name=f"shares_{measure}", title=title, figure=figure, note=note)
-    frame = frame[[*by, measure, "mean", "sd", "low", "high", "n", "trials"]]
+    frame = frame[[*by, column, "mean", "sd", "low", "high", "n", "trials"]]
     yield Table(name=f"shares_{measure}", title=title, frame=frame, heads={"mean": "share"}, folded=True)
 
 
