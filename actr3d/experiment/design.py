@@ -395,7 +395,7 @@ class Design(Configuration):
             return dict(values)
         try:
             more: Any = self.derive(values)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise DesignError(f"Design.derive: failed with {type(error).__name__}: {error} (given {dict(values)!r})", "derive") from error
         if not isinstance(more, Mapping):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
@@ -628,6 +628,8 @@ def _key(value: Any) -> Any:
         return tuple(map(_key, cast("Sequence[Any]", value)))
     if isinstance(value, Mapping):
         return tuple((name, _key(one)) for name, one in cast("Mapping[str, Any]", value).items())
+    if isinstance(value, Distribution) and not isinstance(value, Configuration):  # whose text may be its address in memory
+        return (type(value).__name__, *(value.quantile(p) for p in (0.1, 0.5, 0.9)))
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else repr(value)
 
 

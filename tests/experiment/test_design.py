@@ -439,6 +439,23 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
             "from actr3d.experiment import *\n@design\ndef a(): return Design()\n@design\ndef b(): return Design()\n",
             r"must define one design \(found 2\); there are: a, b; name one as '.*d\.py:NAME'",
         ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a(): return Design()\n@design\ndef a(): return Design()\n",
+            r"d\.py: defines the design 'a' 2 times; give each another name",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a(): return Design()\nexit()\n",
+            r"d\.py: must not end the program when it is loaded \(it ended with SystemExit\(None\)\)",
+        ),
+        (
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'], derive=lambda _: exit(3))\n",
+            r"d\.py:5: Design\.derive: failed with SystemExit: 3 \(given \{\}\)",
+        ),
+        (
+            "n = 1\nm = n\nfrom actr3d.experiment import *\nfrom random import random\n@design\ndef a():\n"
+            "  return Design(measures=['m'],\n    factors={'n': [random(), random()]})\n",
+            r"d\.py:8: a\(\) must return the same design each time \(different: n\); draw with a seed",
+        ),
         ("from actr3d.experiment import *\n@design\ndef a(): return 3\n", r"d\.py:3: a\(\) must return a Design \(returned 3\)"),
         (
             "from actr3d.experiment import *\n@design\ndef a(x): pass\n",
