@@ -60,6 +60,17 @@ class Source(Configuration):
     helpers: Mapping[str, Any] = field(default_factory=dict[str, Any])
     """The modules beside it that it imports, directly or through others; see `HelperTexts.loaded`."""
 
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ConfigurationError: If one has the wrong type.
+        """
+        super().__post_init__()
+        for name, module in self.helpers.items():
+            if not isinstance(module, (list, tuple)) or [*map(type, cast("Sequence[Any]", module))] != [str, str]:
+                raise ConfigurationError(f"Source.helpers['{name}']: must be a file and its text (got {module!r})")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Specification(Configuration):

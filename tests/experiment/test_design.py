@@ -522,6 +522,9 @@ def test_a_specification_from_elsewhere_is_checked() -> None:
     for text in ("", "[]", "{}", '{"format": 1}', '{"format": 1, "design": 3, "model": {}}'):
         with pytest.raises(ExperimentError, match="it: is not the description of an experiment"):
             Specification.from_json(text, "it")
+    source = '{"file": "a.py", "text": "", "helpers": {"b": 3}}'
+    with pytest.raises(ExperimentError, match=r"it: is not .* \(Source\.helpers\['b'\]: must be a file and its text \(got 3\)\)"):
+        Specification.from_json(f'{{"format": 1, "name": "a", "design": {source}, "model": {source}}}', "it")
     with pytest.raises(ExperimentError, match="it: has format 7; this version reads format 1"):
         Specification.from_json('{"format": 7}', "it")
 
