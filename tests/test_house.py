@@ -36,6 +36,7 @@ PARTS: dict[str, set[str]] = {
     "registry": set(),
     "forks": set(),
     "replacing": set(),
+    "processors": set(),
     "trace_kinds": {"registry"},
     "trace": {"errors", "clock", "values", "trace_kinds"},
     "change": {"errors", "configuration", "registry"},
@@ -50,7 +51,12 @@ PARTS: dict[str, set[str]] = {
     "simulation": BASE | BODILY | SENSES | {"recording", "output", "notebook"},
     "runner": BASE | BODILY | SENSES | RUNNING | {"output", "parameter_schema"},
     "benchmark": {"registry"},
-    "experiment": BASE | {"jit", "replacing"} | BODILY | SENSES | RUNNING | {"parameter_schema", "output", "runner", "benchmark"},
+    "experiment": BASE
+    | {"jit", "replacing", "processors"}
+    | BODILY
+    | SENSES
+    | RUNNING
+    | {"parameter_schema", "output", "runner", "benchmark"},
     "bench": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "benchmark"},
     "output": set(),
     "cli": BASE | BODILY | SENSES | RUNNING | {"parameter_schema", "runner", "experiment", "bench", "benchmark", "output"},

@@ -26,7 +26,7 @@ LAST_LINES = 60
 """How many lines of its messages are kept."""
 PART = 4_000
 """How much of a message is read at a time, and shown at most [characters]."""
-OF_VALUE = re.compile(r"\A--set (\w+): (?:Design(?:, .*?: \1|\.\w+(?:\['.*?'\])?)?: )?")
+OF_VALUE = re.compile(r"\A--set (\w+): (?:Design(?:, .*?: \1|\.\w+(?:\['.*?'\](?:\[\d+\])?)?)?: )?")
 """How the command begins an error about a value that replaces one of the design: with its option, and the place in the design."""
 
 
@@ -94,16 +94,6 @@ EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExper
 
 
 # -- the process
-
-
-def processors() -> int:
-    """Returns the number of processors that an experiment uses by default: a container or a job of a cluster may have fewer than its
-    machine."""
-    try:
-        from dask.system import CPU_COUNT  # as the command has it; loaded when it is needed
-    except ModuleNotFoundError:  # the packages for experiments are optional
-        return os.cpu_count() or 1
-    return CPU_COUNT
 
 
 class ExperimentRunError(Actr3dError):

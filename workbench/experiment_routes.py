@@ -10,10 +10,11 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 from pydantic import Field, TypeAdapter, ValidationError
 
+from actr3d.processors import processors
 from actr3d.values import to_json
 from workbench.design_files import MOST, CheckRequest, Level, StartRequest, Workers, designs_of
 from workbench.disconnects import while_connected
-from workbench.experiment_command import ExperimentFacts, ExperimentRunError, processors
+from workbench.experiment_command import ExperimentFacts, ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile

@@ -19,7 +19,6 @@ from typing import Any
 from unittest.mock import patch
 
 import mujoco
-from dask.system import CPU_COUNT
 
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.benchmark import Measurement, benchmark, processor_time_of
@@ -27,6 +26,7 @@ from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.trial import record_trial, run_trial
 from actr3d.output import printing_nothing
+from actr3d.processors import processors
 
 DESIGN = "warren_whang_1987"
 SAMPLE = 8
@@ -75,7 +75,7 @@ def _aperture(folder: Path) -> list[Measurement]:
                 record_trial(plain.experiment, trial, folder / f"{next(count)}.rec", plain.helpers)
 
     costs = [_cost(work) for work in (plain.run, recorded)]
-    minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / CPU_COUNT / 60
+    minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / processors() / 60
     predictive = _Trials("predictive")
     return [
         Measurement(name="a trial", value=costs[0], sense="at most", limit=3, what="processor time of a trial / of mj_step in it"),

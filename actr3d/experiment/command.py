@@ -31,6 +31,7 @@ from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.experiment.versions import experiment_versions
+from actr3d.processors import processors
 from actr3d.values import to_json
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
             out.line(f"  {name} of {group}: {value}")
     for name, value in facts["settings"].items():
         out.line(f"  {name}: {value}")
-    out.line(f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / _processors():,.0f} s on this computer")
+    out.line(f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / processors():,.0f} s on this computer")
     if ended_early((first["end"], second["end"])):
         out.line("its first trials ", (NOTHING_LEFT, "bold"))
     for number, error in failed:
@@ -167,7 +168,7 @@ def run(
         if before < total:
             with (
                 _stopping() as stop,
-                local_cluster(workers or _processors()) if cluster is None else nullcontext(cluster) as client,
+                local_cluster(workers or processors()) if cluster is None else nullcontext(cluster) as client,
                 _progress(out, "", total) as show,
             ):
                 try:
@@ -212,7 +213,7 @@ def fit(
         Exception: Any error that the files of the design and of the model themselves raise.
     """
     from actr3d.experiment.cluster import existing_cluster, local_cluster
-    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target, measures_of
+    from actr3d.experiment.fit import Fit, HeldOut, Range, TargetMean, check_measure, load_target, measures_of
 
     def means(experiment: Experiment, data: str | None, give: str, measure: str | None) -> tuple[TargetMean, ...]:
         data = data or experiment.design.human
@@ -225,25 +226,25 @@ def fit(
                 check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
         return found
 
-    def held_out_means(design: str, data: str) -> tuple[TargetMean, ...]:
+    def held_out(design: str, data: str) -> HeldOut:
         try:
             experiment = specify(design)
             has = measures_of(experiment)
-            return means(experiment, data, f"--hold-out {design}=FILE", measure if not has or measure in has else None)
+            target = means(experiment, data, f"--hold-out {design}=FILE", measure if not has or measure in has else None)
+            return HeldOut(experiment=experiment, target=target)
         except DesignError:  # names the design
             raise
         except ExperimentError as error:
             raise ExperimentError(f"--hold-out {design}: {error}") from None
 
-    fitted = specify(name, values=values)
+    fitted = specify(name, participants=participants, trials=trials, values=values)
     path = Path(folder or f"fit {fitted.specification.name}")
     check_folder_of_fit(path)
     wanted = means(fitted, target, "--target FILE", measure)
     named = [given.partition("=") for given in hold_out]
     if twice := [design for design, count in Counter(design for design, _, _ in named).items() if count > 1]:
         raise SettingError(f"--hold-out {twice[0]}: is given twice; give one")
-    held_out = {design: held_out_means(design, data) for design, _, data in named}
-    options = {"values": values, "participants": participants, "trials": trials}
+    others = {design: held_out(design, data) for design, _, data in named}
     searched = [Range.from_text(text) for text in ranges]
     for one in searched:
         groups = fitted.design.groups.items()
@@ -255,7 +256,7 @@ def fit(
     def open_cluster() -> Generator[Any]:
         # First the cluster, which may not answer: then no folder is made.
         with (
-            local_cluster(workers or _processors()) if scheduler is None else existing_cluster(scheduler) as client,
+            local_cluster(workers or processors()) if scheduler is None else existing_cluster(scheduler) as client,
             _folder_of_fit(path),
         ):
             yield client
@@ -264,9 +265,9 @@ def fit(
         out.line(f"RMSE {rmse:.4g}" if math.isfinite(rmse) else "not all means of the target, or failed trials")
 
     progress = partial(_progress, out)
-    running = Fit(name, searched, wanted, path, open_cluster, options=options, progress=progress, evaluated=evaluated)
+    running = Fit(name, fitted, searched, wanted, path, open_cluster, progress=progress, evaluated=evaluated)
     try:
-        result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
+        result = running.run(candidates, hold_out=others, ablate=ablate, recover=recover)
     except KeyboardInterrupt:
         out.line("finished trials are kept: the same command continues the fit")
         raise
@@ -495,13 +496,6 @@ def _show_failures(store: Store, out: Output) -> None:
     out.line((f"{_trials(store.failures)} failed", "bold red"), " (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
         out.line(f"  {count:,}  {text}")
-
-
-def _processors() -> int:
-    """Returns the number of processors that this process may use; a container or a job of a cluster may have fewer than its machine."""
-    from dask.system import CPU_COUNT  # Dask takes a while to load
-
-    return CPU_COUNT
 
 
 @contextmanager

@@ -252,15 +252,16 @@ class Design(Configuration):
                 raise DesignError(f"Design.factors['{name}']: must be a list of levels (got {given!r})", name)
             if not given:
                 raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
-            _check_plain(list(levels), f"Design.factors['{name}']", name, several=True)
+            for number, level in enumerate(levels):
+                _check_plain(level, f"Design.factors['{name}'][{number}]", name)
             # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
             tidy[name] = [float(f"{one:.12g}") if type(one) is float else one for one in levels]
-            if len(set(map(_key, tidy[name]))) < len(levels):
-                raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
-            texts = {plain_text(level): level for level in reversed(tidy[name])}
-            for level in tidy[name]:
-                if (first := texts[plain_text(level)]) is not level:
-                    raise DesignError(f"Design.factors['{name}']: has two levels with the same text: {first!r} and {level!r}", name)
+            for key, wrong in ((_key, "must name each level once"), (plain_text, "has two levels with the same text")):
+                before: dict[Any, Any] = {}
+                for level in tidy[name]:
+                    if (same := key(level)) in before:
+                        raise DesignError(f"Design.factors['{name}']: {wrong} (got {before[same]!r} and {level!r})", name)
+                    before[same] = level
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
             _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
@@ -394,7 +395,7 @@ class Design(Configuration):
             return dict(values)
         try:
             more: Any = self.derive(values)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise DesignError(f"Design.derive: failed with {type(error).__name__}: {error} (given {dict(values)!r})", "derive") from error
         if not isinstance(more, Mapping):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
@@ -627,10 +628,21 @@ def _key(value: Any) -> Any:
         return tuple(map(_key, cast("Sequence[Any]", value)))
     if isinstance(value, Mapping):
         return tuple((name, _key(one)) for name, one in cast("Mapping[str, Any]", value).items())
+    if isinstance(value, Distribution) and not isinstance(value, Configuration):  # whose text may be its address in memory
+        return (type(value).__name__, *(value.quantile(p) for p in (0.1, 0.5, 0.9)))
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else repr(value)
 
 
-def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, several: bool = False) -> None:
+def why_unstorable(value: Any) -> str | None:
+    """Returns in words why tables and databases cannot store a whole number or a text, as the end of an error; None if they can."""
+    if isinstance(value, int) and not -LARGEST <= value < LARGEST:
+        return f"must be a whole number of at most 64 bits, or a float (got one of {value.bit_length()} bits)"
+    if isinstance(value, str) and escape_surrogates(value) != value:
+        return f"must be a text of characters that can be stored (got {value!r})"
+    return None
+
+
+def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False) -> None:
     """Checks that a value, and each value in it, can be written to tables, to JSON and into the text of a model.
 
     Args:
@@ -638,7 +650,6 @@ def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, seve
         where: What it is the value of, for the error.
         name: The name that leads to its line.
         drawn: Whether it may be a distribution.
-        several: Whether it is a list of such values.
 
     Raises:
         DesignError: If one of them cannot be written.
@@ -647,35 +658,23 @@ def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, seve
         return
     waiting = [value]
     for one in waiting:
-        right, got = "", ""
+        wrong = why_unstorable(one)
         match one:
             case list() | tuple():
                 waiting += cast("Sequence[Any]", one)
             case Mapping() if all(isinstance(key, str) for key in cast("Mapping[Any, Any]", one)):
                 waiting += (part for pair in cast("Mapping[str, Any]", one).items() for part in pair)
-            case bool() | None:
-                pass
-            case int() if not -LARGEST <= one < LARGEST:
-                right = "whole numbers of at most 64 bits, or floats" if several else "a whole number of at most 64 bits, or a float"
-                got = f"one of {one.bit_length()} bits"
             case float() if not math.isfinite(one):
-                right = "finite"
-            case str() if escape_surrogates(one) != one:
-                right = f"{'texts' if several else 'a text'} of characters that can be stored"
-            case int() | float() | str():
+                wrong = f"must be finite (got {value!r})"
+            case int() | float() | str() | None:
                 pass
             case Distribution() if not isinstance(one, type):
                 own = "Group.parameters, for one value of each participant, or Design.settings, for one of each trial"
                 raise DesignError(f"{where}: a distribution belongs to {own} (got {value!r})", name)
             case _:
-                each = (
-                    "numbers, texts, True, False, None, or lists or dicts"
-                    if several
-                    else "a number, text, True, False, None, or a list or dict"
-                )
-                right = f"{each} of these"
-        if right:
-            raise DesignError(f"{where}: must be {right} (got {got or repr(value)})", name)
+                wrong = f"must be a number, text, True, False, None, or a list or dict of these (got {value!r})"
+        if wrong is not None:
+            raise DesignError(f"{where}: {wrong}", name)
 
 
 def _levels(value: Any, before: Sequence[Any]) -> Sequence[Any]:

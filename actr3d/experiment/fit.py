@@ -38,7 +38,7 @@ from actr3d.experiment.emulator import STEPS, Emulator
 from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r
-from actr3d.experiment.specification import Experiment, specify
+from actr3d.experiment.specification import Experiment
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.trial_measures import known_measures
 from actr3d.runner.cli_options import read_settings
@@ -67,6 +67,15 @@ class TargetMean:
     """The group and the levels of factors; a missing one means all of them."""
     measure: str
     mean: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldOut:
+    """A design whose means are predicted and not fitted."""
+
+    experiment: Experiment
+    target: Sequence[TargetMean]
+    """What its means are compared with."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,12 +225,12 @@ class Fit:
     """A fit of parameters to means.
 
     Args:
-        design: The name or file of the design.
+        design: The name or file of the design, for the result.
+        experiment: The experiment without the fitted parameters.
         ranges: The parameters and their ranges.
         target: The means to fit, of one measure.
         folder: Where candidates are kept.
         open_cluster: Opens the folder and the cluster, and yields the cluster; called when all else has been checked.
-        options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
         progress: Shows the progress of each experiment.
         evaluated: Called with the root mean square difference of each candidate; infinite if it has not all means.
@@ -235,30 +244,26 @@ class Fit:
     def __init__(
         self,
         design: str,
+        experiment: Experiment,
         ranges: Sequence[Range],
         target: Sequence[TargetMean],
         folder: Path,
         open_cluster: Callable[[], AbstractContextManager[Any]],
         *,
-        options: Mapping[str, Any] | None = None,
         seed: int = 1,
         progress: ProgressBar = lambda _what, _total: nullcontext(lambda _: None),
         evaluated: Callable[[float], object] = lambda _rmse: None,
     ) -> None:
-        self._design, self._ranges, self._folder, self._open_cluster = design, tuple(ranges), folder, open_cluster
+        self._design, self._base, self._ranges, self._folder, self._open_cluster = design, experiment, tuple(ranges), folder, open_cluster
         self._seed, self._progress, self._evaluated, self._client = seed, progress, evaluated, None
         if not ranges:
             raise SettingError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
-        options = {"values": {}, "participants": None, "trials": None, **(options or {})}
-        self._base = specify(design, **options)
-        """The experiment without the fitted parameters. Its texts are those of all candidates, whatever becomes of the files meanwhile."""
-        self._others: dict[str, Experiment] = {}
         self._check_ranges()
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
-            experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
-            _check_conditions(self.target, experiment.design)
+            at_ends = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
+            _check_conditions(self.target, at_ends.design)
         self._points: list[dict[str, float]] = []
         self._simulated: list[_Simulated] = []
 
@@ -293,7 +298,7 @@ class Fit:
         self,
         candidates: int,
         *,
-        hold_out: Mapping[str, Sequence[TargetMean]] | None = None,
+        hold_out: Mapping[str, HeldOut] | None = None,
         ablate: Sequence[str] = (),
         recover: int = 0,
     ) -> FitResult:
@@ -301,7 +306,7 @@ class Fit:
 
         Args:
             candidates: The number of candidates.
-            hold_out: Other designs, and what they are compared with.
+            hold_out: Other designs, by name. The values of the fit's experiment hold for them too, its numbers do not.
             ablate: Changes of the model, `NAME=VALUE`, whose effects are shown.
             recover: The number of simulated data sets whose parameters are estimated.
 
@@ -313,17 +318,17 @@ class Fit:
         """
         hold_out = hold_out or {}
         lowest = {one.name: one.low for one in self._ranges}
-        for name, means in hold_out.items():
-            cells = cells_of_target(means, f"--hold-out {name}")
-            if means[0].measure == self.measure and cells == self.target:
+        for name, held_out in hold_out.items():
+            cells = cells_of_target(held_out.target, f"--hold-out {name}")
+            if held_out.target[0].measure == self.measure and cells == self.target:
                 raise ExperimentError(f"--hold-out {name}: its means are those of the fit; name a design, or data, that are not fitted")
-            _check_in_common(cells, self._other(name, lowest).design, f"--hold-out {name}")
+            _check_in_common(cells, self._other(name, held_out.experiment, lowest).design, f"--hold-out {name}")
         for change in ablate:
             _check_in_common(self.target, self._ablated(change, lowest).design, f"--ablate {change}")
         with self._open_cluster() as self._client:
             return self._result(candidates, hold_out, ablate, recover)
 
-    def _result(self, candidates: int, hold_out: Mapping[str, Sequence[TargetMean]], ablate: Sequence[str], recover: int) -> FitResult:
+    def _result(self, candidates: int, hold_out: Mapping[str, HeldOut], ablate: Sequence[str], recover: int) -> FitResult:
         """Runs all candidates and what else is asked for; see `run`."""
         for number in range(candidates):
             self._evaluate(number, f"candidate {number + 1} of {candidates}")
@@ -357,7 +362,7 @@ class Fit:
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
             ),
-            held_out={name: self._held_out(name, target, values) for name, target in hold_out.items()},
+            held_out={name: self._held_out(name, one, values) for name, one in hold_out.items()},
             ablated={change: self._compared("ablated", f"changed: {change}", self._ablated(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )
@@ -504,16 +509,13 @@ class Fit:
 
     # -- other designs, other models, other data
 
-    def _other(self, design: str, values: Mapping[str, Any]) -> Experiment:
-        """Returns a held-out design with the model of the fit; its participants, trials and factors are its own.
+    def _other(self, design: str, other: Experiment, values: Mapping[str, Any]) -> Experiment:
+        """Returns a held-out design with the values of the fit; its participants, trials and factors are its own.
 
         Raises:
             DesignError: If it has a factor whose levels would be replaced, or does not fit the values.
         """
         values = {**self._base.specification.values, **values}
-        if design not in self._others:
-            self._others[design] = specify(design)
-        other = self._others[design]
         varied = other.design.factors
         for name in values:
             if name in varied:
@@ -527,9 +529,9 @@ class Fit:
         except DesignError as error:
             raise DesignError(f"--hold-out {design}: {error}", error.name) from None
 
-    def _held_out(self, name: str, target: Sequence[TargetMean], values: Mapping[str, float]) -> Agreement:
-        cells = cells_of_target(target)
-        return self._compared("hold-out", f"held out: {name}", self._other(name, values), target[0].measure, cells)
+    def _held_out(self, name: str, held_out: HeldOut, values: Mapping[str, float]) -> Agreement:
+        experiment, cells = self._other(name, held_out.experiment, values), cells_of_target(held_out.target)
+        return self._compared("hold-out", f"held out: {name}", experiment, held_out.target[0].measure, cells)
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Experiment:
         """Returns the experiment of the fit with one value of the model changed.

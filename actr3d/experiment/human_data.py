@@ -33,6 +33,9 @@ from __future__ import annotations
 import csv
 import io
 import math
+import os
+import stat
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -48,6 +51,8 @@ SHOWN = 20
 """The maximum number of errors that are named at a time."""
 MAX_BYTES = 256 * 1024 * 1024
 """The maximum size of a file: some two million trials."""
+PATIENCE = 5.0
+"""The maximum time in which a program must open a pipe to write human data to it [s]; then it may take as long as it needs."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
 """The columns of published means that are not factors."""
 RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
@@ -132,8 +137,7 @@ def _text(path: Path | str) -> str:
         ExperimentError: If it cannot be read.
     """
     try:
-        with Path(path).open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        data = _bytes(path)
         if len(data) <= MAX_BYTES:
             return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         why = f"it has more than {MAX_BYTES:,} bytes"
@@ -142,6 +146,25 @@ def _text(path: Path | str) -> str:
     except (OSError, UnicodeDecodeError) as error:
         why = reason_of(error) if isinstance(error, OSError) else "it is not UTF-8"
     raise ExperimentError(f"{path}: cannot be read as human data ({why})")
+
+
+def _bytes(path: Path | str) -> bytes:
+    """Returns what a file holds, or a pipe receives, up to one byte more than is allowed.
+
+    Raises:
+        OSError: If it cannot be read, or is a pipe to which no program writes.
+    """
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
+        begin: bytes | None = b""
+        if stat.S_ISFIFO(os.fstat(file.fileno()).st_mode):
+            end = time.monotonic() + PATIENCE
+            # Without a writer, reading returns nothing at once; with one that has not written yet, it returns None.
+            while (begin := file.raw.read(1)) == b"":
+                if time.monotonic() > end:
+                    raise OSError("it is a pipe to which no program writes")
+                time.sleep(0.02)
+        os.set_blocking(file.fileno(), True)
+        return (begin or b"") + file.read(MAX_BYTES + 1)
 
 
 class HumanFile:

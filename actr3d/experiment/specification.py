@@ -60,6 +60,17 @@ class Source(Configuration):
     helpers: Mapping[str, Any] = field(default_factory=dict[str, Any])
     """The modules beside it that it imports, directly or through others; see `HelperTexts.loaded`."""
 
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ConfigurationError: If one has the wrong type.
+        """
+        super().__post_init__()
+        for name, module in self.helpers.items():
+            if not isinstance(module, (list, tuple)) or [*map(type, cast("Sequence[Any]", module))] != [str, str]:
+                raise ConfigurationError(f"Source.helpers['{name}']: must be a file and its text (got {module!r})")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Specification(Configuration):
@@ -285,6 +296,8 @@ def specify(
     source = _source_of(path)
     if not chosen:
         marked = _marked(source)
+        if len(marked) != 1 and len({*marked}) == 1:
+            raise ExperimentError(f"{path}: defines the design '{marked[0]}' {len(marked)} times; give each another name")
         if len(marked) != 1:
             found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
             raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
@@ -304,6 +317,10 @@ def specify(
         versions=experiment_versions(),
     )
     experiment, people = Experiment(specification), library_human_data()
+    if different := of_design.changed_names(experiment.written):  # each process loads it again
+        with naming_the_line(source, chosen):
+            names = ", ".join(different)
+            raise DesignError(f"{chosen}() must return the same design each time (different: {names}); draw with a seed", different[0])
     human = experiment.design.human
     if human is not None and human not in people:
         with naming_the_line(source, chosen):
@@ -400,11 +417,13 @@ def load_blueprint(model: Source, helpers: HelperTexts) -> Blueprint:
 
     Raises:
         ModelFileError: If the file is not valid.
+        ExperimentError: If it ends the program.
         Exception: Any error that the file itself raises.
     """
     from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
 
-    return Blueprint(model.text, model.file, Path(model.file).parent, helpers)
+    with _refusing_to_end(model.file):
+        return Blueprint(model.text, model.file, Path(model.file).parent, helpers)
 
 
 def load_quietly(source: Source, helpers: HelperTexts | None = None) -> ModuleType:
@@ -416,10 +435,24 @@ def load_quietly(source: Source, helpers: HelperTexts | None = None) -> ModuleTy
 
     Raises:
         ModelFileError: If it is not Python 3.
+        ExperimentError: If it ends the program.
         Exception: Any error that the file itself raises.
     """
-    with RunLimits(seed=0), printing_nothing():
+    with RunLimits(seed=0), printing_nothing(), _refusing_to_end(source.file):
         return load_text(source.text, source.file, folder=Path(source.file).parent, helpers=helpers or HelperTexts(source.helpers))
+
+
+@contextmanager
+def _refusing_to_end(file: str) -> Generator[None]:
+    """Raises an error if a file that is loaded inside the block ends the program.
+
+    Raises:
+        ExperimentError: If it does.
+    """
+    try:
+        yield
+    except SystemExit as error:
+        raise ExperimentError(f"{file}: must not end the program when it is loaded (it ended with {error!r})") from None
 
 
 def design_in(module: ModuleType, name: str, source: Source) -> Design:

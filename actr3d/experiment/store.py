@@ -160,8 +160,9 @@ class Store:
         try:
             path.mkdir(parents=True, exist_ok=True)
             if not all(UNFINISHED.fullmatch(file.name) for file in path.iterdir()):
-                what = "holds an experiment already; continue it with --resume" if (path / SPECIFICATION).exists() else "is not empty"
-                raise ExperimentError(f"--out: '{path}' {what}, or name a new folder")
+                there = (path / SPECIFICATION).exists()
+                what = "holds an experiment already; continue it with --resume, or" if there else "is not empty;"
+                raise ExperimentError(f"--out: '{path}' {what} name a new folder")
             with creating(path / SPECIFICATION) as part:
                 part.write_text(text, encoding="utf-8")
             _sync(path)

@@ -16,7 +16,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import DesignError, ExperimentError, did_you_mean, followed
-from actr3d.experiment.design import HUGE, LARGEST, OWN_COLUMNS, Measured, Trial, as_python
+from actr3d.experiment.design import HUGE, OWN_COLUMNS, Measured, Trial, as_python, why_unstorable
 from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
 from actr3d.output import printing_nothing
 from actr3d.parameter_schema import parameters_of
@@ -180,12 +180,8 @@ def _plain(name: str, value: Any, measure: Measured) -> Any:
     value = as_python(value)
     if isinstance(value, float) and HUGE < abs(value) < math.inf:
         raise ExperimentError(f"measure '{name}': must be from {-HUGE:g} to {HUGE:g} (got {value!r})")
-    if isinstance(value, int) and not -LARGEST <= value < LARGEST:
-        raise ExperimentError(
-            f"measure '{name}': must be a whole number of at most 64 bits, or a float (got one of {value.bit_length()} bits)"
-        )
-    if isinstance(value, str) and not value.isascii() and escape_surrogates(value) != value:
-        raise ExperimentError(f"measure '{name}': must be a text of characters that can be stored (got {value!r})")
+    if (wrong := why_unstorable(value)) is not None:
+        raise ExperimentError(f"measure '{name}': {wrong}")
     if type(value) not in PLAIN:
         lists = "; of a list, give Design.measures a Measured with over=" if isinstance(value, (list, tuple)) else ""
         raise DesignError(f"measure '{name}': must be a number, text, True, False or None (got {value!r}){lists}", measure.name)

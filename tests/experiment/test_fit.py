@@ -23,6 +23,7 @@ from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import (
     STARTING,
     Fit,
+    HeldOut,
     Range,
     TargetMean,
     agreement,
@@ -92,20 +93,24 @@ def means(levels: tuple[int, ...]) -> tuple[TargetMean, ...]:
 
 def fit_of(tmp_path: Path, client: Any, *ranges: str, line: str = LINE, **options: Any) -> Fit:
     (tmp_path / "line.py").write_text(line, encoding="utf-8")
-    parsed = [Range.from_text(text) for text in ranges or ("slope=0..3", "offset=0..2")]
-    return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", lambda: nullcontext(client), **options)
+    name, parsed = f"{tmp_path / 'line.py'}:line", [Range.from_text(text) for text in ranges or ("slope=0..3", "offset=0..2")]
+    return Fit(name, specify(name, **options), parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", lambda: nullcontext(client))
+
+
+def held_out(design: str, levels: tuple[int, ...]) -> dict[str, HeldOut]:
+    return {design: HeldOut(experiment=specify(design), target=means(levels))}
 
 
 @pytest.mark.slow
 def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client, "slope=0..3")
     path = tmp_path / "line.py"
-    held_out = {f"{path}:line": means((1, 2, 3)), f"{path}:steeper": means((10, 20, 30))}
-    one, other = fit.run(2, hold_out=held_out).held_out.values()
+    others = held_out(f"{path}:line", (1, 2, 3)) | held_out(f"{path}:steeper", (10, 20, 30))
+    one, other = fit.run(2, hold_out=others).held_out.values()
     assert [row["x"] for row in one.rows] == [1, 2, 3]
     assert [row["x"] for row in other.rows] == [10, 20, 30]
     again = fit_of(tmp_path, client, "slope=0..3")
-    better = again.run(8, hold_out=held_out)
+    better = again.run(8, hold_out=others)
     assert better.parameters[0].value != fit.run(2).parameters[0].value
     assert [found.rmse for found in better.held_out.values()] != [one.rmse, other.rmse]
 
@@ -158,9 +163,8 @@ def test_a_held_out_design_may_have_another_measure_than_the_fit(
 
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
     steeper = f"{tmp_path / 'line.py'}:steeper"
-    options = {"values": {"noise": 0, "offset": 7}, "participants": 1, "trials": 1}
-    fit = fit_of(tmp_path, client, "slope=0..3", options=options)
-    result = fit.run(1, hold_out={steeper: means((10, 20, 30))})
+    fit = fit_of(tmp_path, client, "slope=0..3", values={"noise": 0, "offset": 7}, participants=1, trials=1)
+    result = fit.run(1, hold_out=held_out(steeper, (10, 20, 30)))
     slope = result.parameters[0].value
     assert [row["model"] for row in result.held_out[steeper].rows] == [pytest.approx(slope * x + 7) for x in (10, 20, 30)]
     (folder,) = (tmp_path / "fit").glob("hold-out *")
@@ -169,20 +173,20 @@ def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path:
 
 
 def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
-    fit = fit_of(tmp_path, None, "slope=0..3", options={"values": {"x": [1, 2, 3, 4, 5]}})
+    fit = fit_of(tmp_path, None, "slope=0..3", values={"x": [1, 2, 3, 4, 5]})
     says = r"--hold-out .*:steeper: varies x \(10, 20, 30\), which --set x would replace; leave out one"
     with pytest.raises(DesignError, match=says):
-        fit.run(1, hold_out={f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))})
-    fit = fit_of(tmp_path, None, "slope=0..3", options={"values": {"noise": 0}})
+        fit.run(1, hold_out=held_out(f"{tmp_path / 'line.py'}:steeper", (10, 20, 30)))
+    fit = fit_of(tmp_path, None, "slope=0..3", values={"noise": 0})
     (tmp_path / "other.py").write_text(LINE.replace("noise = 0.1", "").replace("noise *", "0.1 *"), encoding="utf-8")
     with pytest.raises(DesignError, match=r"--hold-out .*other.py:steeper: --set noise: Design: the model has no parameter 'noise'"):
-        fit.run(1, hold_out={f"{tmp_path / 'other.py'}:steeper": means((10, 20, 30))})
+        fit.run(1, hold_out=held_out(f"{tmp_path / 'other.py'}:steeper", (10, 20, 30)))
 
 
 def test_held_out_means_that_are_those_of_the_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
     line = f"{tmp_path / 'line.py'}:line"
     with pytest.raises(ExperimentError, match=r"--hold-out .*:line: its means are those of the fit; name a design, or data, that are not"):
-        fit_of(tmp_path, None).run(1, hold_out={line: means((5, 4, 3, 2, 1))})
+        fit_of(tmp_path, None).run(1, hold_out=held_out(line, (5, 4, 3, 2, 1)))
 
 
 @pytest.mark.parametrize(
@@ -201,14 +205,13 @@ def test_ablated_models_that_cannot_be_are_refused_before_anything_runs(tmp_path
 def test_held_out_designs_without_any_condition_of_their_target_are_refused_before_anything_runs(tmp_path: Path) -> None:
     says = r"--hold-out .*:steeper: the target has no mean for x 10, 20, 30; it has: 1, 2"
     with pytest.raises(ExperimentError, match=says):
-        fit_of(tmp_path, None).run(1, hold_out={f"{tmp_path / 'line.py'}:steeper": means((1, 2))})
+        fit_of(tmp_path, None).run(1, hold_out=held_out(f"{tmp_path / 'line.py'}:steeper", (1, 2)))
 
 
 def test_an_ablation_reads_values_as_other_options_do(tmp_path: Path, client: Any) -> None:
     line = LINE.replace("noise = 0.1", "noise = 0\npart = True").replace("y = model.value", "y = model.value if part else 7.0")
     changes = ["part=False", "part=false", "part=None", "part=()"]
-    options = {"participants": 1}
-    result = fit_of(tmp_path, client, "slope=0..3", line=line, options=options).run(1, ablate=[*changes, "part='False'"])
+    result = fit_of(tmp_path, client, "slope=0..3", line=line, participants=1).run(1, ablate=[*changes, "part='False'"])
     assert all({row["model"] for row in result.ablated[change].rows} == {7.0} for change in changes)
     assert [row["model"] for row in result.ablated["part='False'"].rows] == [row["model"] for row in result.fit.rows]
 
@@ -217,14 +220,14 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
     (tmp_path / "line.py").write_text(LINE, encoding="utf-8")
     ranges = [Range.from_text("slope=0..3")]
     with pytest.raises(ExperimentError, match=r"--target: has a mean for x 7, which the design does not have; it has: 1, 2, 3, 4, 5"):
-        Fit(f"{tmp_path / 'line.py'}:line", ranges, means((1, 7)), tmp_path / "fit", nullcontext)
+        Fit("line", specify(f"{tmp_path / 'line.py'}:line"), ranges, means((1, 7)), tmp_path / "fit", nullcontext)
 
 
 @pytest.mark.slow
 def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
-    held_out = {f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))}
-    result = fit.run(STARTING + 6, hold_out=held_out, ablate=["slope=0"], recover=2)
+    others = held_out(f"{tmp_path / 'line.py'}:steeper", (10, 20, 30))
+    result = fit.run(STARTING + 6, hold_out=others, ablate=["slope=0"], recover=2)
     slope, offset = result.parameters
     assert slope.value == pytest.approx(1.4, abs=0.15)
     assert offset.value == pytest.approx(1.0, abs=0.4)
@@ -246,7 +249,7 @@ def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) 
 def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client: Any) -> None:
     """The range is a thousand times as wide as the interval."""
     line = LINE.replace("noise = 0.1", "noise = 0.0").replace("offset = 0.5", "offset = 0.9")
-    result = fit_of(tmp_path, client, "slope=0..100", line=line, options={"participants": 1}).run(STARTING + 8)
+    result = fit_of(tmp_path, client, "slope=0..100", line=line, participants=1).run(STARTING + 8)
     (slope,) = result.parameters
     best = 1.4 + 0.1 * 15 / 55  # of a line through 0.9, for data of one through 1
     assert result.is_confirmed
@@ -265,7 +268,8 @@ def test_a_fit_of_no_more_means_than_parameters_ends_although_they_cannot_be_rea
     (tmp_path / "line.py").write_text(text.replace("participants=4", "participants=1"), encoding="utf-8")
     target = [TargetMean(conditions={"x": 4}, measure="y", mean=30.0)]
     ranges = [Range.from_text("slope=0..4")]
-    fit = Fit(f"{tmp_path / 'line.py'}:line", ranges, target, tmp_path / "fit", lambda: nullcontext(client), seed=2)
+    line = specify(f"{tmp_path / 'line.py'}:line")
+    fit = Fit("line", line, ranges, target, tmp_path / "fit", lambda: nullcontext(client), seed=2)
     (slope,) = fit.run(STARTING + 15).parameters
     assert (slope.value, slope.low, slope.high) == (4, None, None)
 
@@ -313,7 +317,7 @@ def test_a_fit_of_means_that_jump_has_no_interval_and_its_value_is_the_best_that
 @pytest.mark.slow
 def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, client: Any) -> None:
     line = LINE.replace("slope = 2.0", "slope = 1.0").replace("self.value = slope", "assert slope <= 1.2\n        self.value = slope")
-    result = fit_of(tmp_path, client, "slope=0..3", line=line, options={"participants": 1}).run(STARTING + 10)
+    result = fit_of(tmp_path, client, "slope=0..3", line=line, participants=1).run(STARTING + 10)
     (slope,) = result.parameters
     assert 1.1 < slope.value <= 1.2
     assert slope.high is None
@@ -322,8 +326,8 @@ def test_where_the_model_fails_no_further_candidates_are_spent(tmp_path: Path, c
 
 def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, client: Any) -> None:
     (tmp_path / "a").mkdir()
-    whole = fit_of(tmp_path / "a", client, options={"participants": 1}).run(8)
-    first = fit_of(tmp_path / "a", client, options={"participants": 1})
+    whole = fit_of(tmp_path / "a", client, participants=1).run(8)
+    first = fit_of(tmp_path / "a", client, participants=1)
     again = first.run(8)
     assert again == whole
     folders = [path.name for path in (tmp_path / "a" / "fit").iterdir()]
@@ -411,7 +415,7 @@ def test_candidates_at_which_the_model_fails_are_bad_ones(tmp_path: Path, client
 
 
 def test_a_fit_at_whose_candidates_the_model_always_fails_shows_its_error(tmp_path: Path, client: Any) -> None:
-    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope != 1.0"), options={"participants": 1})
+    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope != 1.0"), participants=1)
     with pytest.raises(
         ExperimentError,
         match=r"no candidate .* without failed trials; trial 0 in '.*candidate \w+' failed: ValueError: no line: [\d.]+$",
@@ -424,8 +428,8 @@ def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client:
     """Else, a model that fails in hard trials would be compared by the easy ones."""
     line = FAILING.replace("FAILS", "x == 5 and abs(slope - 1.35) < 0.1 and self.random.random() < 0.6")
     steeper = f"{tmp_path / 'line.py'}:steeper"
-    fit = fit_of(tmp_path, client, "slope=0..3", line=line, options={"values": {"offset": 1}})
-    result = fit.run(STARTING, hold_out={steeper: means((10, 20, 30))}, ablate=["slope=1.4"])
+    fit = fit_of(tmp_path, client, "slope=0..3", line=line, values={"offset": 1})
+    result = fit.run(STARTING, hold_out=held_out(steeper, (10, 20, 30)), ablate=["slope=1.4"])
     failing = [one for one in result.tried if one.failed]
     assert [(one.values["slope"], one.rmse, one.trials) for one in failing] == [(1.35, None, 20)]
     assert 0 < failing[0].failed < 4
@@ -467,7 +471,7 @@ def test_a_fit_says_that_one_value_replaces_those_of_groups(tmp_path: Path, caps
 
 
 def test_all_candidates_are_of_one_model_whatever_becomes_of_its_file(tmp_path: Path, client: Any) -> None:
-    fit = fit_of(tmp_path, client, "slope=0..3", options={"values": {"noise": 0}})
+    fit = fit_of(tmp_path, client, "slope=0..3", values={"noise": 0})
     (tmp_path / "line.py").write_text("half of a fi", encoding="utf-8")
     result = fit.run(1, ablate=["offset=7"])
     assert [row["model"] for row in result.ablated["offset=7"].rows] == [
@@ -521,7 +525,7 @@ def test_a_parameter_that_is_no_number_or_has_a_value_is_refused(tmp_path: Path)
     ):
         fit_of(tmp_path, None, "shape=0..1", line=line)
     with pytest.raises(SettingError, match=r"^--parameter slope: has a value by --set, too \(2\); leave out one"):
-        fit_of(tmp_path, None, "slope=0..1", options={"values": {"slope": 2}})
+        fit_of(tmp_path, None, "slope=0..1", values={"slope": 2})
 
 
 def test_a_parameter_that_is_given_twice_is_refused(tmp_path: Path) -> None:
@@ -574,14 +578,9 @@ def test_targets_whose_conditions_are_not_clear_are_refused(tmp_path: Path, clie
     model, people = tmp_path / "line.py", tmp_path / "people.csv"
     model.write_text(LINE, encoding="utf-8")
     people.write_text("\n".join(lines), encoding="utf-8")
+    design = specify(f"{model}:line")
     with pytest.raises(ExperimentError, match=says):
-        Fit(
-            f"{model}:line",
-            [Range.from_text("slope=0..3")],
-            load_target(str(people), specify(f"{model}:line"), "y"),
-            tmp_path / "fit",
-            nullcontext,
-        )
+        Fit("line", design, [Range.from_text("slope=0..3")], load_target(str(people), design, "y"), tmp_path / "fit", nullcontext)
 
 
 @pytest.mark.parametrize(
@@ -707,11 +706,12 @@ def test_an_error_in_a_file_without_the_measure_of_the_fit_names_this_measure(tm
 
 def test_levels_may_be_lists_and_dicts(tmp_path: Path) -> None:
     factors = '{"load": [[1, 2], (3,), {"a": [4]}, None]}'
-    design = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))
+    path = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))
+    design = specify(path)
     (people := tmp_path / "people.csv").write_text('participant,load,rt\np,"[1, 2]",1\np,[3],2\np,"{""a"": [4]}",3\np,,4\n')
-    target = load_target(str(people), specify(design))
-    Fit(design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", nullcontext)
-    folder = store_rows(tmp_path / "out", design, lambda trial: {"rt": float(trial.position)})
+    target = load_target(str(people), design)
+    Fit("counting", design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", nullcontext)
+    folder = store_rows(tmp_path / "out", path, lambda trial: {"rt": float(trial.position)})
     with Store(folder) as store:
         found = cells_of_rows(store.rows(), Measured(name="rt"), ["group", "load"])
     assert agreement({cell: mean_of(people) for cell, people in found.items()}, cells_of_target(target)).cells == 4

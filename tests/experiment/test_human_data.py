@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
+import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from actr3d.errors import ExperimentError
+from actr3d.experiment import human_data
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.human_data import SHOWN, HumanFile, Schema, library_human_data
 from actr3d.experiment.specification import library_designs, specify
@@ -143,6 +147,32 @@ def test_all_errors_are_named_at_once_but_not_without_end(tmp_path: Path) -> Non
     assert [re.sub(r".*csv:(\d+):.*", r"\1", line) for line in lines[:4]] == ["2", "3", "5", "6"]
     assert len(lines) == SHOWN + 1
     assert lines[-1] == "... and 22 more errors"
+
+
+def test_a_pipe_is_read_and_one_to_which_nobody_writes_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pipe = tmp_path / "people.csv"
+    os.mkfifo(pipe)
+    text = HEAD + "1,small,0.4,fast,50\n" * 5000
+
+    def write() -> None:
+        with pipe.open("w") as file:  # waits for the reader
+            time.sleep(0.3)
+            file.write(text)
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    try:
+        assert len(HumanFile(pipe).read(SCHEMA).rows) == 5000
+    finally:
+        writer.join()
+    reading, writing = os.pipe()  # as a shell passes one for `<(...)`
+    with os.fdopen(reading), os.fdopen(writing, "w") as end:
+        end.write(HEAD + "1,small,0.4,fast,50\n")
+        end.close()
+        assert len(HumanFile(f"/dev/fd/{reading}").read(SCHEMA).rows) == 1
+    monkeypatch.setattr(human_data, "PATIENCE", 0.1)
+    with pytest.raises(ExperimentError, match=r"people.csv: cannot be read as human data \(it is a pipe to which no program writes\)"):
+        HumanFile(pipe)
 
 
 def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:

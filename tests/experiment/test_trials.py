@@ -576,7 +576,7 @@ def test_only_one_process_writes(tmp_path: Path) -> None:
 
 def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> None:
     specification = specify(str(write_experiment(tmp_path))).specification
-    with pytest.raises(ExperimentError, match=r"is not empty"):
+    with pytest.raises(ExperimentError, match=r"is not empty; name a new folder$"):
         Store.create(tmp_path, specification)
     with pytest.raises(ExperimentError, match=r"counter\.py' is a file; name a new folder"):
         Store.create(tmp_path / "counter.py", specification)

@@ -120,6 +120,8 @@ def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
     assert workbench.post("/api/experiments", {"design": COUNTING, "values": {"nn": 3}}).json() == wrong.json()
     empty = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": []}})
     assert (empty.status_code, empty.json()["error"]) == (422, "n: must have at least one level (got [])")
+    huge = workbench.post("/api/designs/check", {"design": COUNTING, "texts": {"n": ["1", "1" + "0" * 30]}}).json()
+    assert huge["error"] == "n: must be a whole number of at most 64 bits, or a float (got one of 100 bits)"
     bounds = workbench.post("/api/designs/check", {"design": "warren_whang_1987", "texts": {"aperture": ["0.5", "4"]}})
     assert (bounds.status_code, bounds.json()["error"]) == (422, "aperture: must be <= 3 (got 4)")
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from actr3d.experiment.report.libraries import matplotlib
+from actr3d.values import shortened
 
 INK, MUTED, GRID, PAPER = "#1b2430", "#5b6675", "#dde2e8", "#fffffe"
 COLOURS = ("#0072b2", "#c44e00", "#007a5e", "#a3528f", "#8a6d00", "#3f7fbf")
@@ -53,6 +54,8 @@ SCALE = 1.53
 Look = Literal["model", "points", "human", "other", "baseline"]
 """`model`: the experiment of the report; `points`: the same without a line; `human`: people;
 `other`: another experiment or model; `baseline`: what any model must beat."""
+LONGEST_TEXT = 60
+"""The maximum length of a title, tick or label of a figure [characters]; of a longer one, the beginning is shown."""
 CHARACTERS, ROOM_OF_HANDLE = 13, 6
 """How many characters of a legend fit into an inch, and how many take the room of a line with its marker."""
 LOOKS: dict[str, dict[str, Any]] = {
@@ -114,12 +117,12 @@ def curves_figure(
                 ax.remove()
                 continue
             pane = panes[place]
-            ax.set_title(pane.title)
+            ax.set_title(shortened(pane.title, LONGEST_TEXT))
             _shade(ax, pane)
             for curve in pane.curves:
                 _draw(ax, curve, labels.index(curve.label) if curve.label else None, len(labels))
             if ticks:
-                ax.set_xticks([at for at, _ in ticks], [text for _, text in ticks])
+                ax.set_xticks([at for at, _ in ticks], [shortened(text, LONGEST_TEXT) for _, text in ticks])
             if place + columns >= len(panes):
                 ax.set_xlabel(x_label)
                 ax.tick_params(labelbottom=True)
@@ -170,7 +173,17 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
     handles: list[Any] = []
     for number, label in enumerate(labels):
         colour = COLOURS[number % len(COLOURS)]
-        handles.append(line([], [], color=colour, linewidth=1.8, marker=MARKERS[number % len(MARKERS)], markersize=5.5, label=label))
+        handles.append(
+            line(
+                [],
+                [],
+                color=colour,
+                linewidth=1.8,
+                marker=MARKERS[number % len(MARKERS)],
+                markersize=5.5,
+                label=shortened(label, LONGEST_TEXT),
+            )
+        )
     curves = [curve for pane in panes for curve in pane.curves]
     sources = {(one.source, one.look): bool(one.label) for one in sorted(curves, key=lambda one: bool(one.label))}
     if len(sources) > 1:
@@ -179,7 +192,7 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
             hollow = look.pop("hollow", False)
             face = PAPER if hollow else INK
             look = {"marker": "o" if sources[source, name] else "D", "markerfacecolor": face, "markeredgecolor": INK, **look}
-            handles.append(line([], [], color=INK, label=source, **look))
+            handles.append(line([], [], color=INK, label=shortened(source, LONGEST_TEXT), **look))
     bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
     handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]
     if handles:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import extract_tb
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.design import plain_text
-from actr3d.experiment.human_data import HumanData
+from actr3d.experiment.human_data import HumanData, factor_name
 from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
@@ -242,15 +242,43 @@ def measure_sections(parts: Sequence[Results], others: Sequence[ReferenceMeans],
 
 
 def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
-    """Returns a table for each measure that is a text: how many trials had each."""
+    """Returns for each measure that is a text how many trials had each, and their shares by the factor on the x axis of figures."""
     found: list[str | Table | Plot | Caution] = []
     for name in results.outcomes:
         by = [key for key in ("group",) if len(results.groups) > 1]
-        rows = results.rows[[*by, name]].fillna({name: "none"})
-        if rows[name].nunique() <= MAX_KINDS:
-            counts = in_order(rows.groupby([*by, name], observed=True).size().rename("trials").reset_index(), by, rows)
+        column = factor_name(name)
+        rows = results.rows[[*by, name]].fillna({name: "none"}).rename(columns={name: column})
+        if rows[column].nunique() <= MAX_KINDS:
+            counts = in_order(rows.groupby([*by, column], observed=True).size().rename("trials").reset_index(), by, rows)
             found.append(Table(name=f"counts_{name}", title=f"Trials by {name.replace('_', ' ')}", frame=counts))
+            found += _shares(results, name)
     return found
+
+
+def _shares(results: Results, measure: str) -> Iterator[Table | Plot]:
+    """Yields a figure and a table of the shares of each text of a measure; nothing for a single text, or without factors."""
+    layout, rows = layout_of(results), results.rows.fillna({measure: "none"})
+    texts = sorted(rows[measure].unique())
+    if layout is None or layout.x == "group" or len(texts) < 2:
+        return
+    x, column, title = layout.x, factor_name(measure), f"Shares of each {measure.replace('_', ' ')} by {layout.x.replace('_', ' ')}"
+    by = [*(["group"] if len(results.groups) > 1 else []), x]
+    of = {text: cell_means(rows.assign(**{measure: (rows[measure] == text) * 1.0}), measure, by) for text in texts}
+    levels: dict[str, Sequence[Any]] = {**results.factors, column: texts}
+    frame = in_order(pandas().concat([means.assign(**{column: text}) for text, means in of.items()]), by, rows)
+    places, ticks = _axis(levels[x])
+    panes: list[Pane] = []
+    for group in results.groups:
+        source = ("model", "model", frame[frame["group"] == group] if "group" in by else frame)
+        curves = _curves(source, {}, replace(layout, curves=column), levels, places)
+        panes.append(Pane(title=group if "group" in by else "", curves=curves))
+    note = "Shares of the trials of a participant, averaged over participants, with 95 % bootstrap intervals."
+    if averaged := [name for name in results.factors if name != x]:
+        note += f" Averaged over: {', '.join(averaged)}."
+    figure = curves_figure(panes, results.name_with_unit(x), "share of trials", ticks=ticks, from_zero=True)
+    yield Plot(name=f"shares_{measure}", title=title, figure=figure, note=note)
+    frame = frame[[*by, column, "mean", "sd", "low", "high", "n", "trials"]]
+    yield Table(name=f"shares_{measure}", title=title, frame=frame, heads={"mean": "share"}, folded=True)
 
 
 def _measure_section(results: Results, measure: str, others: Sequence[ReferenceMeans], *, secondary: bool) -> Section:
@@ -344,7 +372,7 @@ def figure_of(results: Results, measure: str, others: Sequence[ReferenceMeans]) 
         return None, ""
     levels: dict[str, Sequence[Any]] = {**results.all_factors, "group": results.groups}
     by = [name for name in (*layout.panes, layout.curves, layout.x) if name is not None]
-    places: dict[Any, float] = {level: float(n) for n, level in enumerate(levels[layout.x]) if isinstance(level, str)}
+    places, ticks = _axis(levels[layout.x])
     sources: list[tuple[str, Look, Any]] = [("model", "model", cell_means(results.rows, measure, by))]
     for one in others:
         sources.append((one.label, one.look, _averaged(one, measure, by, results)))  # noqa: PERF401 - pyright infers other types
@@ -354,14 +382,19 @@ def figure_of(results: Results, measure: str, others: Sequence[ReferenceMeans]) 
         curves = [curve for source in sources for curve in _curves(source, here, layout, levels, places)]
         title = ", ".join(f"{name.replace('_', ' ')} {plain_text(level)}{_unit(results, name)}" for name, level in here.items())
         panes.append(Pane(title=title, curves=curves))
-    ticks = [(place, str(level)) for level, place in places.items()]
-    if all(isinstance(level, float) and level.is_integer() for level in levels[layout.x]) and len(levels[layout.x]) <= MAX_TICKS:
-        ticks = [(float(level), f"{level:g}") for level in levels[layout.x]]
     figure = curves_figure(panes, results.name_with_unit(layout.x), results.name_with_unit(measure), ticks=ticks)
     note = "Means of participants with 95 % bootstrap intervals."
     if layout.averaged:
         note += f" Averaged over: {', '.join(layout.averaged)}."
     return figure, note
+
+
+def _axis(levels: Sequence[Any]) -> tuple[dict[Any, float], list[tuple[float, str]]]:
+    """Returns the places of levels that are texts on an axis, and its ticks; none to choose them."""
+    places: dict[Any, float] = {level: float(n) for n, level in enumerate(levels) if isinstance(level, str)}
+    if all(isinstance(level, float) and level.is_integer() for level in levels) and len(levels) <= MAX_TICKS:
+        return places, [(float(level), f"{level:g}") for level in levels]
+    return places, [(place, str(level)) for level, place in places.items()]
 
 
 def _curves(

@@ -34,7 +34,7 @@ from actr3d.experiment.fit import load_target
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
-from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
+from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, png, svg
 from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
 from actr3d.experiment.report.libraries import pandas, pingouin
 from actr3d.experiment.report.page import page as report_page
@@ -682,6 +682,38 @@ def test_trials_are_counted_by_the_texts_of_a_measure(tmp_path: Path) -> None:
 
     results = read_results(store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), mixed))
     assert results.rows["rt"].value_counts().to_dict() == {"1": 4, "True": 4, "a": 4}
+
+
+def test_long_texts_are_shortened_in_figures() -> None:
+    label, tick, title = ("x" * 4000, "y" * 4000, "z" * 4000)
+    curves = [Curve(label=label + end, source="model", look="model", x=[0, 1], y=[0, 1]) for end in "ab"]
+    figure = curves_figure([Pane(title=title, curves=curves)], "x", "y", ticks=[(0, tick), (1, "short")])
+    drawn = svg(figure)
+    assert [drawn.count(f">{letter * 60}...<") for letter in "xyz"] == [2, 1, 1]
+    assert ">short<" in drawn
+    assert len(png(figure)) > 1000
+
+
+def test_shares_of_the_texts_of_a_measure_are_shown_by_the_first_factor(tmp_path: Path) -> None:
+    def answer(trial: Trial) -> dict[str, Any]:
+        text = None if trial.repetition == 4 else "yes" if trial.repetition <= trial.values["n"] else "no"
+        return dict.fromkeys(("rt", "trials", "mean"), text)  # also with the names of columns of tables
+
+    design = write_experiment(tmp_path, factors='{"n": [1, 2, 3]}', participants=3, trials=4)
+    results = read_results(store_rows(tmp_path / "out", str(design), answer))
+    (everything, *_) = measure_sections(by_number(results), [])
+    tables = frames(everything.parts)
+    rows = tables["shares_rt"].to_dict("records")
+    assert [(row["n_"], row["rt"], row["mean"], row["n"], row["trials"]) for row in rows] == [
+        (n, text, share, 3, 12) for n in (1, 2, 3) for text, share in (("no", (3 - n) / 4), ("none", 0.25), ("yes", n / 4))
+    ]
+    assert tables["counts_trials"].to_dict("records")[0] == {"trials_": "no", "trials": 9}
+    assert tables["shares_mean"]["mean_"].to_list() == ["no", "none", "yes"] * 3
+    (plot, *_) = (part for part in everything.parts if isinstance(part, Plot))
+    assert [line.get_label() for line in plot.figure.legends[0].get_lines()] == ["rt no", "rt none", "rt yes"]
+    report = write_report(tmp_path / "out").parent
+    assert (report / "tables" / "shares_rt.csv").exists()
+    assert (report / "figures" / "shares_rt.png").exists()
 
 
 def test_a_walker_that_has_not_judged_neither_passes_nor_does_not(tmp_path: Path) -> None:
