@@ -32,6 +32,8 @@ LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
 LARGEST = 2**63
 """Whole numbers must be below this, which tables and databases can store."""
+MANY = 100_000
+"""The greatest number of values in lists and dicts within each other that are the value of one parameter."""
 HUGE = 1e100
 """The maximum size of a number: the squares of larger ones may be infinite."""
 FINEST = 1e-5
@@ -660,6 +662,8 @@ def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False) -> N
     for one in waiting:
         wrong = why_unstorable(one)
         match one:
+            case list() | tuple() | Mapping() if len(waiting) > MANY:
+                wrong = f"must have at most {MANY:,} values within each other; a list or dict that contains itself has no end"
             case list() | tuple():
                 waiting += cast("Sequence[Any]", one)
             case Mapping() if all(isinstance(key, str) for key in cast("Mapping[Any, Any]", one)):

@@ -154,6 +154,9 @@ def test_values_are_derived_from_others() -> None:
         design_of(derive=lambda _: 3).trial(0)  # type: ignore[arg-type, return-value]
 
 
+ENDLESS: dict[str, Any] = {}
+ENDLESS["own"] = ENDLESS
+
 INVALID: list[tuple[dict[str, Any], str]] = [
     ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
     ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
@@ -189,6 +192,7 @@ INVALID: list[tuple[dict[str, Any], str]] = [
         {"settings": {"fixed": {1, 2}}},
         r"Design\.settings\['fixed'\]: must be a number, text, True, False, None, or a list .* \(got \{1, 2\}\)",
     ),
+    ({"settings": {"fixed": ENDLESS}}, r"Design\.settings\['fixed'\]: must have at most 100,000 values within each other"),
     ({"settings": {"fixed": object()}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
     ({"settings": {"fixed": Normal}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
     ({"settings": {"fixed": [Uniform(low=0, high=1)]}}, r"Design\.settings\['fixed'\]: a distribution belongs to"),
