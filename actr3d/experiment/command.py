@@ -294,7 +294,8 @@ def _show_fit(result: FitResult, out: Output) -> None:
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
             r, r2 = ("none" if value is None else f"{value:.3f}" for value in (found.r, found.r2))
-            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r {r}, r2 {r2}, {found.cells} means", *_lost(found))
+            says = found.failure or f"RMSE {found.rmse:.4g}, r {r}, r2 {r2}, {found.cells} means"
+            out.line(f"{title} {what}".rstrip() + f": {says}", *_lost(found))
     for line in _effects(result.fit, result.ablated):
         out.line(line)
     if failing := [one for one in result.tried if one.failed]:

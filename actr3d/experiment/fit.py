@@ -140,8 +140,8 @@ class Agreement:
     """The number of means that are compared: those of conditions in which no trial failed."""
     missing: int
     """The number of means of the target that are not compared: the model has none there, or a trial failed."""
-    rmse: float
-    """The root mean square difference, in the unit of the measure."""
+    rmse: float | None
+    """The root mean square difference, in the unit of the measure; None if no mean is compared."""
     r: float | None
     """The correlation; None if there is none. A negative one is that of a model that falls where the target rises."""
     r2: float | None
@@ -152,6 +152,8 @@ class Agreement:
     """The number of trials that failed."""
     trials: int = 0
     """The number of all trials."""
+    failure: str | None = None
+    """Why no mean is compared; None if some are."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -478,16 +480,14 @@ class Fit:
     def _compared(
         self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
     ) -> Agreement:
-        """Runs an experiment, or continues it, and compares its means with a target; for the arguments, see `_simulate`.
-
-        Raises:
-            ExperimentError: If they have no conditions in common.
-        """
+        """Runs an experiment, or continues it, and compares its means with a target; for the arguments, see `_simulate`."""
         found = self._simulate(kind, what, experiment, measure, target)
-        if not found.means:
-            without = "has a mean without failed trials" if found.failed else f"has a value of '{measure or self.measure}'"
-            raise ExperimentError(f"{kind}: no condition {without}{found.failure}")
-        return _agreement_of(found, self.target if target is None else target)
+        target = self.target if target is None else target
+        if found.means:
+            return _agreement_of(found, target)
+        without = "has a mean without failed trials" if found.failed else f"has a value of '{measure or self.measure}'"
+        why = f"no condition {without}{found.failure}"
+        return Agreement(cells=0, missing=len(target), rmse=None, r=None, r2=None, failed=found.failed, trials=found.trials, failure=why)
 
     def _emulator(self, target: Mapping[Cell, float]) -> Emulator:
         """Returns the emulator that all candidates until now give: those with a mean in all conditions of the target, and those without."""

@@ -22,6 +22,7 @@ from actr3d.experiment.command import check_folder_of_fit
 from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import (
     STARTING,
+    Agreement,
     Fit,
     HeldOut,
     Range,
@@ -89,6 +90,11 @@ def client() -> Generator[Any]:
 
 def means(levels: tuple[int, ...]) -> tuple[TargetMean, ...]:
     return tuple(TargetMean(conditions={"x": x}, measure="y", mean=TRUE["slope"] * x + TRUE["offset"]) for x in levels)
+
+
+def rmse_of(found: Agreement) -> float:
+    assert found.rmse is not None
+    return found.rmse
 
 
 def fit_of(tmp_path: Path, client: Any, *ranges: str, line: str = LINE, **options: Any) -> Fit:
@@ -235,12 +241,12 @@ def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) 
     assert slope.high is not None
     assert slope.low < 1.4 < slope.high
     assert slope.high - slope.low < 0.8
-    assert result.fit.rmse < 0.25
+    assert rmse_of(result.fit) < 0.25
     assert result.fit.cells == 5
     (further,) = result.held_out.values()
     assert further.cells == 3
     assert further.rmse == pytest.approx(abs(slope.value - 1.4) * math.sqrt(1400 / 3), abs=1)
-    assert result.ablated["slope=0"].rmse > 10 * result.fit.rmse
+    assert rmse_of(result.ablated["slope=0"]) > 10 * rmse_of(result.fit)
     for one in result.recovered:
         assert one["slope"] == pytest.approx(one["true slope"], abs=0.4)
 
@@ -257,7 +263,7 @@ def test_a_fit_ends_at_the_least_squares_in_a_wide_range(tmp_path: Path, client:
     assert result.fit.rmse == pytest.approx(math.sqrt(0.01 - 0.01 * 15 * 15 / 55 / 5), rel=0.02)
     assert slope.low is not None
     assert slope.high is not None
-    half = float(stdtrit(4, 0.975)) * result.fit.rmse * math.sqrt(5 / 4 / 55)
+    half = float(stdtrit(4, 0.975)) * rmse_of(result.fit) * math.sqrt(5 / 4 / 55)
     assert (slope.low, slope.high) == (pytest.approx(best - half, abs=half / 10), pytest.approx(best + half, abs=half / 10))
 
 
@@ -434,13 +440,28 @@ def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client:
     assert [(one.values["slope"], one.rmse, one.trials) for one in failing] == [(1.35, None, 20)]
     assert 0 < failing[0].failed < 4
     assert 1.45 <= result.parameters[0].value <= 1.65  # where no trial fails
-    assert result.fit.rmse <= min(one.rmse for one in result.tried if one.rmse is not None)
+    assert rmse_of(result.fit) <= min(one.rmse for one in result.tried if one.rmse is not None)
     assert (result.fit.missing, result.fit.failed, result.fit.trials) == (0, 0, 20)
     assert (result.held_out[steeper].missing, result.held_out[steeper].failed, result.held_out[steeper].trials) == (0, 0, 36)
     changed = result.ablated["slope=1.4"]
     assert (changed.cells, changed.missing, changed.trials) == (4, 1, 20)
     assert [row["x"] for row in changed.rows] == [1, 2, 3, 4]
     assert 0 < changed.failed < 4
+
+
+def test_a_changed_model_of_which_all_trials_fail_is_shown_beside_the_fit(tmp_path: Path, capsys: Any) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(FAILING.replace("FAILS", "offset == 7").replace("participants=4", "participants=1"), encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
+    assert main([*words, "--candidates", "2", "--ablate", "offset=7"]) == 0
+    told = capsys.readouterr().out
+    assert re.search(r"changed offset=7: no condition has a mean without failed trials; trial 0 in .* failed: ValueError: no line", told)
+    found = json.loads((tmp_path / "fit" / "fit.json").read_text())
+    assert (found["fit"]["cells"], found["fit"]["failure"]) == (2, None)
+    changed = found["ablated"]["offset=7"]
+    assert (changed["rmse"], changed["cells"], changed["missing"], changed["rows"]) == (None, 0, 2, [])
+    assert changed["failed"] == changed["trials"] > 0
 
 
 def test_failed_trials_are_shown(tmp_path: Path, capsys: Any) -> None:
