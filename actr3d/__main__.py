@@ -3,8 +3,8 @@
 import os
 import sys
 
-RUNNING = ("run", "replay", "experiment")
-"""The commands that run a model in their own process."""
+RUNNING = ("run", "replay", "experiment", "fit")
+"""The commands that run a model, or read a design, in their own process."""
 
 
 def main() -> int:

@@ -32,8 +32,6 @@ LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
 LARGEST = 2**63
 """Whole numbers must be below this, which tables and databases can store."""
-MANY = 100_000
-"""The greatest number of values in lists and dicts within each other that are the value of one parameter."""
 HUGE = 1e100
 """The maximum size of a number: the squares of larger ones may be infinite."""
 FINEST = 1e-5
@@ -573,12 +571,16 @@ class _ReadNames(dict[str, Any]):
 
 
 def as_python(value: Any) -> Any:
-    """Returns a value with the numbers and arrays of numpy in it as numbers and lists of Python, which tables and texts can hold."""
+    """Returns a value with the numbers and arrays of numpy in it as numbers and lists of Python, which tables and texts can hold.
+
+    A list that contains itself is left as it is.
+    """
     convert: Any = getattr(value, "tolist", None)
     if callable(convert):
         return convert()
     if type(value) in (list, tuple):
-        return type(value)(map(as_python, value))
+        with suppress(RecursionError):
+            return type(value)(map(as_python, value))
     return value
 
 
@@ -644,6 +646,19 @@ def why_unstorable(value: Any) -> str | None:
     return None
 
 
+def _has_no_end(value: Any, within: frozenset[int] = frozenset()) -> bool:
+    """Returns whether a list or dict contains itself, or is too deep for Python."""
+    if not isinstance(value, (list, tuple, Mapping)):
+        return False
+    if id(cast("Any", value)) in within:
+        return True
+    parts = cast("Iterable[Any]", value.values() if isinstance(value, Mapping) else value)
+    try:
+        return any(_has_no_end(part, within | {id(cast("Any", value))}) for part in parts)
+    except RecursionError:
+        return True
+
+
 def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False) -> None:
     """Checks that a value, and each value in it, can be written to tables, to JSON and into the text of a model.
 
@@ -658,12 +673,12 @@ def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False) -> N
     """
     if drawn and isinstance(value, Distribution) and not isinstance(value, type):
         return
+    if _has_no_end(value):
+        raise DesignError(f"{where}: must not contain itself, or too many lists and dicts within each other", name)
     waiting = [value]
     for one in waiting:
         wrong = why_unstorable(one)
         match one:
-            case list() | tuple() | Mapping() if len(waiting) > MANY:
-                wrong = f"must have at most {MANY:,} values within each other; a list or dict that contains itself has no end"
             case list() | tuple():
                 waiting += cast("Sequence[Any]", one)
             case Mapping() if all(isinstance(key, str) for key in cast("Mapping[Any, Any]", one)):

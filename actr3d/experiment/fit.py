@@ -483,10 +483,10 @@ class Fit:
         """Runs an experiment, or continues it, and compares its means with a target; for the arguments, see `_simulate`."""
         found = self._simulate(kind, what, experiment, measure, target)
         target = self.target if target is None else target
-        if found.means:
+        if found.means.keys() & target.keys():
             return _agreement_of(found, target)
         without = "has a mean without failed trials" if found.failed else f"has a value of '{measure or self.measure}'"
-        why = f"no condition {without}{found.failure}"
+        why = f"no condition of the target {without}{found.failure}"
         return Agreement(cells=0, missing=len(target), rmse=None, r=None, r2=None, failed=found.failed, trials=found.trials, failure=why)
 
     def _emulator(self, target: Mapping[Cell, float]) -> Emulator:

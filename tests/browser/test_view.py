@@ -405,7 +405,6 @@ def test_no_label_lies_under_the_retina(pages: Callable[..., Page]) -> None:
     expect(label).to_be_visible()
 
 
-@pytest.mark.slow
 def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[..., Page], tmp_path: Path) -> None:
     page = pages()
     frame = frame_of(page)

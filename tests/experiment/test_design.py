@@ -156,6 +156,8 @@ def test_values_are_derived_from_others() -> None:
 
 ENDLESS: dict[str, Any] = {}
 ENDLESS["own"] = ENDLESS
+ROUND: list[Any] = [1]
+ROUND.append(ROUND)
 
 INVALID: list[tuple[dict[str, Any], str]] = [
     ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
@@ -192,7 +194,9 @@ INVALID: list[tuple[dict[str, Any], str]] = [
         {"settings": {"fixed": {1, 2}}},
         r"Design\.settings\['fixed'\]: must be a number, text, True, False, None, or a list .* \(got \{1, 2\}\)",
     ),
-    ({"settings": {"fixed": ENDLESS}}, r"Design\.settings\['fixed'\]: must have at most 100,000 values within each other"),
+    ({"settings": {"fixed": ENDLESS}}, r"Design\.settings\['fixed'\]: must not contain itself"),
+    ({"settings": {"fixed": ROUND}}, r"Design\.settings\['fixed'\]: must not contain itself"),
+    ({"factors": {"a": [ROUND]}}, r"Design\.factors\['a'\]\[0\]: must not contain itself"),
     ({"settings": {"fixed": object()}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
     ({"settings": {"fixed": Normal}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
     ({"settings": {"fixed": [Uniform(low=0, high=1)]}}, r"Design\.settings\['fixed'\]: a distribution belongs to"),

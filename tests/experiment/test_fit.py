@@ -141,7 +141,6 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     assert "95 % interval: none: it needs more means than parameters" in capsys.readouterr().out
 
 
-@pytest.mark.slow
 def test_a_held_out_design_may_have_another_measure_than_the_fit(
     tmp_path: Path, client: Any, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -449,19 +448,24 @@ def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client:
     assert 0 < changed.failed < 4
 
 
-def test_a_changed_model_of_which_all_trials_fail_is_shown_beside_the_fit(tmp_path: Path, capsys: Any) -> None:
+@pytest.mark.parametrize("fails", ["offset == 7", "offset == 7 and x in (1, 3)"])
+def test_a_changed_model_that_fails_in_all_conditions_of_the_target_is_shown_beside_the_fit(
+    tmp_path: Path, capsys: Any, fails: str
+) -> None:
     model, people = tmp_path / "line.py", tmp_path / "people.csv"
-    model.write_text(FAILING.replace("FAILS", "offset == 7").replace("participants=4", "participants=1"), encoding="utf-8")
+    model.write_text(FAILING.replace("FAILS", fails).replace("participants=4", "participants=1"), encoding="utf-8")
     people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
     words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
     assert main([*words, "--candidates", "2", "--ablate", "offset=7"]) == 0
     told = capsys.readouterr().out
-    assert re.search(r"changed offset=7: no condition has a mean without failed trials; trial 0 in .* failed: ValueError: no line", told)
+    assert re.search(
+        r"changed offset=7: no condition of the target has a mean without failed trials; trial \d+ in .* failed: ValueError: no line", told
+    )
     found = json.loads((tmp_path / "fit" / "fit.json").read_text())
     assert (found["fit"]["cells"], found["fit"]["failure"]) == (2, None)
     changed = found["ablated"]["offset=7"]
     assert (changed["rmse"], changed["cells"], changed["missing"], changed["rows"]) == (None, 0, 2, [])
-    assert changed["failed"] == changed["trials"] > 0
+    assert 0 < changed["failed"] <= changed["trials"]
 
 
 def test_failed_trials_are_shown(tmp_path: Path, capsys: Any) -> None:

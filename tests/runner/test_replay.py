@@ -222,7 +222,6 @@ def test_a_replay_reports_where_it_differs(change: str, message: str, file: Path
     assert message in report.text
 
 
-@pytest.mark.slow
 def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
     forge(path, """UPDATE facts SET value = '{"python": "2.7"}' WHERE name = 'versions'""")

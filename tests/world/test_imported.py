@@ -505,7 +505,6 @@ def test_every_field_of_a_geom_is_moved() -> None:
     assert {field for field in dir(geom.alt) if not field.startswith("_")} == {"type", "axisangle", "euler", "xyaxes", "zaxis"}
 
 
-@pytest.mark.slow
 def test_no_text_crashes_the_process(tmp_path: Path) -> None:
     """Descriptions with a value replaced by an extreme one either compile or are a `WorldError`; in a separate process."""
     rich = ARM.replace(
