@@ -409,7 +409,9 @@ def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[...,
     page = pages()
     frame = frame_of(page)
     in_the_middle(page, frame)
-    assert min(frame.evaluate(SHADED)) > 100, "feet and walls have shadows on the ground"
+    near, far = frame.evaluate(SHADED)
+    assert near > 500, "feet and walls have shadows on the ground"
+    assert far > near / 30, "also five times as far away, where they have a 25th of the area"
     frame.evaluate(
         """() => {
           const { now } = window.scene.facts;
