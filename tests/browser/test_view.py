@@ -406,12 +406,10 @@ def test_no_label_lies_under_the_retina(pages: Callable[..., Page]) -> None:
 
 
 def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[..., Page], tmp_path: Path) -> None:
-    page = pages()
+    page = pages(height=808)
     frame = frame_of(page)
     in_the_middle(page, frame)
-    near, far = frame.evaluate(SHADED)
-    assert near > 500, "feet and walls have shadows on the ground"
-    assert far > near / 30, "also five times as far away, where they have a 25th of the area"
+    assert min(frame.evaluate(SHADED)) > 100, "feet and walls have shadows on the ground"
     frame.evaluate(
         """() => {
           const { now } = window.scene.facts;
