@@ -8,7 +8,7 @@ import os
 def processors() -> int:
     """Returns the number of processors that this process may use: a container or a job of a cluster may have fewer than its machine.
 
-    Dask knows the limits of containers. It comes with the packages for experiments, which alone need them.
+    Without Dask, which comes with the packages for experiments, the limits of containers are not known.
     """
     try:
         from dask.system import CPU_COUNT  # takes a while to load

@@ -88,6 +88,7 @@ _SEED: _Values = ("a whole number or a text", lambda value: isinstance(value, st
 _PERIOD: _Values = ("a whole number > 0", lambda value: type(value) is int and 0 < value < LARGEST)
 _DICT: _Values = ("values by their names", lambda value: isinstance(value, dict))
 FACTS = {
+    # A file of another format is not opened; other versions are refused or allowed before a replay.
     "form": RecordedFact(*_TEXT, always=True, replay="ignores"),
     "kind": RecordedFact("'simulation' or 'program'", lambda value: value in ("simulation", "program"), always=True),
     "versions": RecordedFact(*_TEXTS, always=True, replay="ignores"),
@@ -109,6 +110,7 @@ FACTS = {
     "failed": RecordedFact("a text, or null", lambda value: value is None or isinstance(value, str), of_end=True),
     "ended": RecordedFact('{"by": a text}, or null', _ended, of_end=True),
     "whole": RecordedFact("true, or null", lambda value: value is True or value is None, only="simulation", of_end=True),
+    # Of a run of the workbench, which a replay by the command does not have.
     "branched": RecordedFact("a number >= 0, or null", lambda value: value is None or _number(value), replay="notes"),
     "origin": RecordedFact(*_TEXT, replay="notes"),
     "ancestors": RecordedFact("pairs of a text and a number >= 0", _ancestors, replay="notes"),
@@ -117,7 +119,7 @@ FACTS = {
 }
 """The facts that this library or the workbench reads, besides those of the simulations of a program; other facts may have any values.
 
-A recording itself writes those that it always has, and those of its end. The last five describe a run of the workbench: the time at which a
+A recording itself writes those that it always has, and those of its end. A run of the workbench may have: the time at which a
 branch begins (`branched`), the recording from which it branches by its first name (`origin`), the recordings from which that one branches,
 each with its time (`ancestors`), the name that the workbench gave the file, by which branches know it after it was renamed (`named`), and
 the time that the runs of a program have reached together [s], which shows nowhere else after the last event (`reached`)."""
