@@ -58,6 +58,10 @@ LONGEST_TEXT = 60
 """The maximum length of a title, tick or label of a figure [characters]; of a longer one, the beginning is shown."""
 CHARACTERS, ROOM_OF_HANDLE = 13, 6
 """How many characters of a legend fit into an inch, and how many take the room of a line with its marker."""
+ROOM_OF_MARKER = 0.025
+"""The room that a marker needs above the highest value, relative to the height of the axes."""
+ROUNDING = 1e-9
+"""Values that differ by less than this, relative to the greatest, are drawn as equal."""
 LOOKS: dict[str, dict[str, Any]] = {
     "model": {"linestyle": "-", "linewidth": 1.8, "markersize": 5.5},
     "points": {"linestyle": "none", "markersize": 6},
@@ -128,10 +132,24 @@ def curves_figure(
                 ax.tick_params(labelbottom=True)
             if place % columns == 0:
                 ax.set_ylabel(y_label)
-        if from_zero:
-            axes.flat[0].set_ylim(bottom=min(0.0, *axes.flat[0].get_ylim()))
+        _limit_y(axes.flat[0], panes, from_zero=from_zero)
         _legend(figure, panes, labels)
     return figure
+
+
+def _limit_y(ax: Any, panes: Sequence[Pane], *, from_zero: bool) -> None:
+    """Sets the limits of y, which all panes share: differences that are rounding stay invisible, and no marker is cut."""
+    curves = [curve for pane in panes for curve in pane.curves]
+    drawn = [float(y) for curve in curves for some in (curve.y, curve.low or (), curve.high or ()) for y in some if math.isfinite(y)]
+    low, high = ax.get_ylim()
+    if drawn and 0 < max(drawn) - min(drawn) < ROUNDING * max(map(abs, drawn)) and not any(pane.level for pane in panes):
+        middle = max(drawn)
+        low, high = middle - 0.05 * abs(middle), middle + 0.05 * abs(middle)
+    if from_zero:
+        low = min(0.0, low)
+        if drawn:
+            high = max(high, max(drawn) + ROOM_OF_MARKER * (max(drawn) - low))
+    ax.set_ylim(low, high)
 
 
 def new_figure(width: float, height: float) -> Any:

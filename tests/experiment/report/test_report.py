@@ -452,6 +452,22 @@ def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> Non
     assert (shown["model"], shown["people"]) == (marker, marker)
 
 
+def test_a_marker_is_never_cut_where_y_begins_at_zero() -> None:
+    curve = Curve(label="careful", source="model", look="model", x=[50], y=[2.94865], low=[2.94785], high=[2.94945])
+    figure = curves_figure([Pane(title="", curves=[curve])], "x", "y", from_zero=True)
+    low, high = figure.axes[0].get_ylim()
+    assert low == 0
+    assert high - 2.94865 > 0.02 * high
+
+
+def test_differences_that_are_rounding_are_not_spread_over_a_figure() -> None:
+    values = [0.1 + 0.2, 0.3, 0.3 + 2e-12]
+    panes = [Pane(title="", curves=[Curve(label="", source="model", look="model", x=[1, 2, 3], y=y)]) for y in (values, values[::-1])]
+    figure = curves_figure(panes, "x", "y")
+    low, high = figure.axes[0].get_ylim()
+    assert (low, high) == pytest.approx((0.285, 0.315))
+
+
 def test_a_factor_with_the_name_of_another_column_is_called_a_factor() -> None:
     table = Table(name="means", title="Means", frame=pandas().DataFrame({"n_": [5.0], "mean": [0.3], "n": [3]}))
     text = report_page("counting", "", {}, [Section(title="rt", parts=[table])], {})
