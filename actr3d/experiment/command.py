@@ -404,8 +404,15 @@ def run_again(folder: str, number: int, recording: str, out: Output) -> int:
 
 
 def is_folder(name: str) -> bool:
-    """Returns whether a name is that of the folder of an experiment."""
-    return (Path(name) / SPECIFICATION).is_file()
+    """Returns whether a name is that of the folder of an experiment.
+
+    Raises:
+        ExperimentError: If that cannot be read, such as for a name that is too long.
+    """
+    try:
+        return (Path(name) / SPECIFICATION).is_file()
+    except OSError as error:
+        raise ExperimentError(f"cannot read '{name}' ({reason_of(error)})") from None
 
 
 def _opened(

@@ -31,7 +31,7 @@ from annotated_types import Ge, Le
 from numpy.typing import NDArray
 
 from actr3d.configuration import Configuration
-from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean, reason_of
 from actr3d.experiment.cluster import ExperimentProgress, run_experiment
 from actr3d.experiment.design import DIGITS, HUGE, OWN_COLUMNS, OWN_NUMBERS, Design, Measured, plain_text
 from actr3d.experiment.emulator import STEPS, Emulator
@@ -583,7 +583,11 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     """
     design, known = experiment.design, library_human_data()
     path = known.get(name, Path(name))
-    if not path.exists():
+    try:
+        there = path.exists()
+    except OSError as error:
+        raise ExperimentError(f"human data '{name}': cannot be read ({reason_of(error)})") from None
+    if not there:
         raise ExperimentError(f"human data '{name}': no such file{alternatives(name, known, 'the library has:')}")
     names = {factor_name(name): name for name in (*design.factors, *(one.over for one in design.kept if one.over is not None))}
     levels: Any = {shown: plain_levels(design.factors.get(name, ())) for shown, name in names.items()}

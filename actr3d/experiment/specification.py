@@ -34,7 +34,7 @@ from actr3d.actr.loading.sealed import sealed
 from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as variables_of
 from actr3d.configuration import Configuration
-from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean, reason_of
 from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Group, Measured, Normal, Uniform, is_design
 from actr3d.experiment.human_data import library_human_data
@@ -338,19 +338,27 @@ def _as_json(value: Any) -> Any:
 
 
 def _file_of(name: str) -> tuple[Path, str]:
-    """Returns the file of a design, and the name in it, if it is known."""
+    """Returns the file of a design, and the name in it, if it is known.
+
+    Raises:
+        ExperimentError: If there is no such design or file, or it cannot be read.
+    """
     known = library_designs()
     if name in known:
         return known[name], name
-    file, colon, chosen = name.rpartition(":")
-    if colon and file and chosen.isidentifier() and Path(file).exists():
-        return Path(file), chosen
-    path = Path(name)
     if not name:
         raise ExperimentError("the name of the design must not be empty")
-    if path.is_dir():
+    file, colon, chosen = name.rpartition(":")
+    path = Path(name)
+    try:
+        if colon and file and chosen.isidentifier() and Path(file).exists():
+            return Path(file), chosen
+        is_folder, there = path.is_dir(), path.exists()
+    except OSError as error:
+        raise ExperimentError(f"cannot read '{name}' ({reason_of(error)})") from None
+    if is_folder:
         raise ExperimentError(f"'{name}' is a folder; name a design, or a file with one")
-    if not path.exists():
+    if not there:
         hint = alternatives(name, known, "the library has:", path.parent.glob("*.py"))
         raise ExperimentError(f"no design, file or folder '{name}'{hint}")
     return path, ""

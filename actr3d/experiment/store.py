@@ -155,9 +155,9 @@ class Store:
             ExperimentError: If the folder is not empty, or cannot be made.
         """
         path, text = Path(folder), specification.to_json()
-        if path.exists() and not path.is_dir():
-            raise ExperimentError(f"--out: '{path}' is a file; name a new folder")
         try:
+            if path.exists() and not path.is_dir():
+                raise ExperimentError(f"--out: '{path}' is a file; name a new folder")
             path.mkdir(parents=True, exist_ok=True)
             if not all(UNFINISHED.fullmatch(file.name) for file in path.iterdir()):
                 there = (path / SPECIFICATION).exists()

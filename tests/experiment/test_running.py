@@ -653,3 +653,16 @@ def test_other_versions_are_refused_unless_allowed(tmp_path: Path, capsys: pytes
 def test_the_designs_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["experiment"]) == 0
     assert "warren_whang_1987 9,600 trials Walking through doorways" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize(
+    "command", ["experiment NAME", "experiment FILE --out NAME", "experiment FILE --out NAME --resume", "fit NAME", "fit FILE"]
+)
+def test_a_name_that_is_too_long_for_a_file_is_an_error_that_names_it(command: str, tmp_path: Path, capsys: Any) -> None:
+    given = {"NAME": "n" * 300, "FILE": str(write_experiment(tmp_path))}
+    words = [given.get(word, word) for word in command.split()]
+    if words[0] == "fit":
+        words += ["--parameter", "n=1..3", "--target", given["NAME"], "--out", str(tmp_path / "fit")]
+    assert main(words) in (1, 2)
+    error = capsys.readouterr().err
+    assert re.fullmatch(r"error: [^\n]*n{300}[^\n]*(File name too long|no such file|no design, file or folder)[^\n]*\n", error)
