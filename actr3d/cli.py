@@ -189,10 +189,21 @@ def _seed(text: str) -> int:
     return value
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number >= 1 (got {text})")
+MOST_WORKERS = 1000
+"""The maximum number of workers on one computer; each is a thread here and a process of its own."""
+MOST = 1_000_000_000
+"""The maximum of other numbers of things."""
+
+
+def _count(text: str, most: int = MOST) -> int:
+    if not text.isdecimal() or len(text) > len(str(most)) or not 1 <= int(text) <= most:
+        given = text if len(text) <= 20 else f"{text[:10]}..."
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {most} (got {given})")
     return int(text)
+
+
+def _workers(text: str) -> int:
+    return _count(text, MOST_WORKERS)
 
 
 class _Version(argparse.Action):
@@ -292,7 +303,7 @@ def _add_design_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
     parser.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
     where = parser.add_mutually_exclusive_group()
-    where.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
+    where.add_argument("--workers", type=_workers, metavar="N", help="number of workers here (default: one on each processor)")
     where.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
 
 
@@ -462,7 +473,7 @@ def _refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:
     """Returns the options that change a design."""
-    return {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
+    return {"values": read_settings(options.set, (), levels=True), "participants": options.participants, "trials": options.trials}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -106,12 +106,12 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     people = ", ".join(f"{count} {name}" for name, count in groups.items())
     out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
-        out.line(f"  {factor}: {', '.join(map(str, levels))}")
+        out.line(f"  {factor}: {', '.join(map(_shown, levels))}")
     for group, own in facts["group_parameters"].items():
         for name, value in own.items():
-            out.line(f"  {name} of {group}: {value}")
+            out.line(f"  {name} of {group}: {_shown(value)}")
     for name, value in facts["settings"].items():
-        out.line(f"  {name}: {value}")
+        out.line(f"  {name}: {_shown(value)}")
     out.line(f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / processors():,.0f} s on this computer")
     if ended_early((first["end"], second["end"])):
         out.line("its first trials ", (NOTHING_LEFT, "bold"))
@@ -491,6 +491,13 @@ def _check_versions(there: Specification, *, any_version: bool) -> None:
     different = _other_versions(there)
     if different and not any_version:
         raise ExperimentError(f"its trials until now were run with {', '.join(different)}; install these versions, or add --any-version")
+
+
+def _shown(value: object) -> str:
+    """Returns a value as text; in quotes if it could not be read otherwise."""
+    text = str(value)
+    plain = text.isprintable() and text.strip() == text != "" and "," not in text
+    return text if plain or not isinstance(value, str) else repr(value)
 
 
 def _trials(count: int) -> str:

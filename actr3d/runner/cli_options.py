@@ -49,13 +49,14 @@ def read_options(words: Sequence[str], fields: Sequence[Parameter], others: Iter
     return settings
 
 
-def read_settings(texts: Sequence[str], fields: Sequence[Parameter], option: str = "--set") -> dict[str, Any]:
+def read_settings(texts: Sequence[str], fields: Sequence[Parameter], option: str = "--set", *, levels: bool = False) -> dict[str, Any]:
     """Returns parameters from texts `name=value`; an unknown name gets a value too, so that the builder can reject it.
 
     Args:
         texts: The texts.
         fields: The parameters whose types are known.
         option: The option that gave the texts, for errors.
+        levels: Whether a name may have several levels, for errors.
 
     Raises:
         SettingError: If a text does not have this form, a name has two values, or a list or tuple is not one of Python.
@@ -68,7 +69,8 @@ def read_settings(texts: Sequence[str], fields: Sequence[Parameter], option: str
         if not equals or not name.isidentifier():
             raise SettingError(f"a parameter is set by name=value (got {text!r})")
         if name in given:
-            raise SettingError(f"{option} {name}: is given twice ({given[name]!r}, {value!r}); give one value")
+            several = f", or several levels with commas between them: {name}={given[name]},{value}" if levels else ""
+            raise SettingError(f"{option} {name}: is given twice ({given[name]!r}, {value!r}); give one value{several}")
         given[name] = value
         settings[name] = known[name].value(value) if name in known else literal(value)
         if name not in known and settings[name] == value and value.startswith(("[", "(")):  # one text, where several values were meant

@@ -588,6 +588,35 @@ def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.
     assert "RuntimeError: wrong [/int] list[int] " in capsys.readouterr().out
 
 
+def test_a_check_shows_texts_that_cannot_be_read_otherwise_in_quotes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    levels = r'["a\nb", "", " ", "\x1b[31m", "plain text", "x, y"]'
+    path = write_experiment(tmp_path, factors=f'{{"mode": {levels}}}')
+    assert main(["experiment", str(path), "--check"]) == 0
+    assert r"  mode: 'a\nb', '', ' ', '\x1b[31m', plain text, 'x, y'" in capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("option", "right"),
+    [
+        ("--workers 100000", "from 1 to 1000 (got 100000)"),
+        ("--workers 0", "from 1 to 1000 (got 0)"),
+        (f"--trials {'9' * 5000}", "from 1 to 1000000000 (got 9999999999...)"),
+    ],
+)
+def test_a_number_that_no_computer_can_run_is_refused(option: str, right: str, tmp_path: Path, capsys: Any) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["experiment", str(write_experiment(tmp_path)), *option.split()])
+    assert capsys.readouterr().err.endswith(f"argument {option.split()[0]}: must be a whole number {right}\n")
+
+
+def test_an_error_about_levels_that_are_given_twice_says_how_to_give_several(tmp_path: Path, capsys: Any) -> None:
+    assert main(["experiment", str(write_experiment(tmp_path)), "--set", "n=1", "--set", "n=2"]) == 2
+    assert (
+        capsys.readouterr().err
+        == "error: --set n: is given twice ('1', '2'); give one value, or several levels with commas between them: n=1,2\n"
+    )
+
+
 def test_one_trial_is_not_called_trials(tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
     def local(_: int) -> nullcontext[Any]:
         return nullcontext(client)
