@@ -338,7 +338,7 @@ class Fit:
         losses = [rmse(one.means, self.target) for one in tried]
         best = losses.index(min(losses))
         if not math.isfinite(losses[best]):
-            failure = next((one.failure for one in tried if one.failure), "")
+            failure = next((one.failure for one in tried if one.failure), "") or _most_missing([one.means for one in tried], self.target)
             raise ExperimentError(
                 f"measure '{self.measure}': no candidate has a mean in all conditions of the target, without failed trials{failure}"
             )
@@ -767,6 +767,14 @@ def chance_error(participants: ByParticipant, elsewhere: ByParticipant) -> float
     if len(pairs) == 1:
         pairs = [pair for one in participants.keys() & elsewhere.keys() for pair in zip(participants[one], elsewhere[one], strict=False)]
     return stdev(here - there for here, there in pairs) / math.sqrt(2 * len(pairs)) if len(pairs) > 1 else 0.0
+
+
+def _most_missing(tried: Sequence[Mapping[Cell, float]], target: Mapping[Cell, float]) -> str:
+    """Returns the condition of a target in which most candidates have no mean, as text to append to an error message."""
+    counts = {cell: sum(cell not in means for means in tried) for cell in target}
+    cell = max(counts, key=lambda one: counts[one])
+    where = ", ".join(f"{name} {plain_text(level)}" for name, level in cell)
+    return f"; {counts[cell]} of {len(tried)} candidates have no value in: {where or 'all'}"
 
 
 def rmse(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> float:

@@ -103,6 +103,13 @@ def fit_of(tmp_path: Path, client: Any, *ranges: str, line: str = LINE, **option
     return Fit(name, specify(name, **options), parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", lambda: nullcontext(client))
 
 
+def test_a_condition_in_which_no_candidate_has_a_value_is_named(tmp_path: Path, client: Any) -> None:
+    silent = LINE.replace("y = model.value", "y = model.value if x < 4 else None")
+    expected = r"no candidate .* without failed trials; 3 of 3 candidates have no value in: x 4$"
+    with pytest.raises(ExperimentError, match=expected):
+        fit_of(tmp_path, client, line=silent).run(3)
+
+
 def held_out(design: str, levels: tuple[int, ...]) -> dict[str, HeldOut]:
     return {design: HeldOut(experiment=specify(design), target=means(levels))}
 

@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Literal
 
 from actr3d.experiment.report.libraries import matplotlib
@@ -60,6 +61,8 @@ CHARACTERS, ROOM_OF_HANDLE = 13, 6
 """How many characters of a legend fit into an inch, and how many take the room of a line with its marker."""
 ROOM_OF_MARKER = 0.025
 """The room that a marker needs above the highest value, relative to the height of the axes."""
+NEAREST = 0.8
+"""Intervals beside each other take at most this part of the distance between two levels, so that none is nearer to another level."""
 ROUNDING = 1e-9
 """Values that differ by less than this, relative to the greatest, are drawn as equal."""
 LOOKS: dict[str, dict[str, Any]] = {
@@ -167,15 +170,21 @@ def _shade(ax: Any, pane: Pane) -> None:
         ax.axhspan(low, high, color=MUTED, alpha=0.16, linewidth=0)
 
 
+def _marker(number: int) -> str:
+    """Returns the marker of a label: where colours begin again, other markers go with them."""
+    return MARKERS[(number + number // len(COLOURS)) % len(MARKERS)]
+
+
 def _draw(ax: Any, curve: Curve, number: int | None, of: int) -> None:
     look = dict(LOOKS[curve.look])
     colour = INK if number is None else COLOURS[number % len(COLOURS)]
-    marker = "D" if number is None else MARKERS[number % len(MARKERS)]
+    marker = "D" if number is None else _marker(number)
     hollow = look.pop("hollow", False)
     look = {"marker": marker, "markerfacecolor": PAPER if hollow else colour, "markeredgecolor": colour, **look}
     x = list(curve.x)
     if curve.look == "model" and number is not None and of > 1 and len(x) > 1:  # intervals of two curves must not cover each other
-        step = 0.012 * (max(x) - min(x))
+        gap = min((after - before for before, after in pairwise(sorted(set(x)))), default=0)
+        step = min(0.012 * (max(x) - min(x)), NEAREST * gap / (of - 1))
         x = [value + step * (number - (of - 1) / 2) for value in x]
     ax.plot(x, curve.y, color=colour, zorder=2 if curve.look in ("baseline", "other") else 3, **look)
     if curve.low is not None and curve.high is not None:
@@ -197,7 +206,7 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
                 [],
                 color=colour,
                 linewidth=1.8,
-                marker=MARKERS[number % len(MARKERS)],
+                marker=_marker(number),
                 markersize=5.5,
                 label=shortened(label, LONGEST_TEXT),
             )

@@ -460,6 +460,22 @@ def test_a_marker_is_never_cut_where_y_begins_at_zero() -> None:
     assert high - 2.94865 > 0.02 * high
 
 
+def test_points_of_many_curves_stay_nearer_to_their_own_level_than_to_the_next() -> None:
+    levels = [n / 7 for n in range(150)]
+    curves = [Curve(label=f"g{n}", source="model", look="model", x=levels, y=levels) for n in range(12)]
+    figure = curves_figure([Pane(title="", curves=curves)], "x", "y")
+    for line in figure.axes[0].lines:
+        assert all(abs(at - level) < 0.5 / 7 for at, level in zip(line.get_xdata(), levels, strict=True))
+
+
+def test_no_two_of_many_curves_look_the_same() -> None:
+    curves = [Curve(label=f"g{n}", source="model", look="model", x=[1, 2], y=[n, n]) for n in range(36)]
+    figure = curves_figure([Pane(title="", curves=curves)], "x", "y")
+    looks = [(line.get_color(), line.get_marker()) for line in figure.axes[0].lines]
+    assert len(set(looks)) == 36
+    assert [(one.get_color(), one.get_marker()) for one in figure.legends[0].legend_handles] == looks
+
+
 def test_differences_that_are_rounding_are_not_spread_over_a_figure() -> None:
     values = [0.1 + 0.2, 0.3, 0.3 + 2e-12]
     panes = [Pane(title="", curves=[Curve(label="", source="model", look="model", x=[1, 2, 3], y=y)]) for y in (values, values[::-1])]
