@@ -44,11 +44,14 @@ from typing import Any
 from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean, reason_of
 from actr3d.experiment.design import HUGE, plain_text
 from actr3d.parameter_schema import Parameter
+from actr3d.values import shortened
 
 FOLDER = Path(__file__).parent / "human"
 """The folder of the library's published means."""
 SHOWN = 20
 """The maximum number of errors that are named at a time."""
+LONGEST_GIVEN = 80
+"""How many characters of a cell an error shows."""
 MAX_BYTES = 256 * 1024 * 1024
 """The maximum size of a file: some two million trials."""
 PATIENCE = 5.0
@@ -306,7 +309,7 @@ class HumanFile:
 
     def _row(self, line: int, head: list[str], cells: list[str], published: bool) -> dict[str, Any] | None:
         if len(cells) != len(head):
-            hint = "; a quote that begins in it may not be closed" if any("\n" in cell for cell in cells) else ""
+            hint = "; a quote that begins in it may not be closed" if any("\n" in cell or "," in cell for cell in cells) else ""
             self._errors.append(f"{self._path}:{line}: must have {len(head)} cells, as the first line has (got {len(cells)}){hint}")
             return None
         given, before = dict(zip(head, cells, strict=True)), len(self._errors)
@@ -339,7 +342,7 @@ class HumanFile:
     # -- cells
 
     def _add(self, line: int, column: str, given: str, right: str) -> None:
-        self._errors.append(f"{self._path}:{line}: column '{column}': must be {right} (got {given!r})")
+        self._errors.append(f"{self._path}:{line}: column '{column}': must be {right} (got {shortened(given, LONGEST_GIVEN)!r})")
 
     def _given(self, line: int, column: str, text: str) -> str:
         if not text:
@@ -349,6 +352,8 @@ class HumanFile:
     def _one_of(self, line: int, column: str, text: str, known: Sequence[str], *, needed: bool = False) -> str | None:
         if text in known or (not text and not needed):
             return text or None
+        if text and (around := next((name for name in known if name.strip() == text), None)) is not None:
+            return around  # cells are read without the spaces around them
         self._errors.append(
             f"{self._path}:{line}: column '{column}': must be one of: {', '.join(known)} (got {text!r}){did_you_mean(text, known)}"
         )
@@ -388,7 +393,7 @@ class HumanFile:
         if not least <= value <= most or (whole and value != int(value)):
             kind = "a whole number" if whole else "a number"
             bound = "" if least == -HUGE else f" from {least:g} on" if most == HUGE else f" from {least:g} to {most:g}"
-            if math.isfinite(value) and abs(value) > HUGE:
+            if abs(value) > HUGE and any(map(str.isdigit, text)):
                 bound = f" from {max(least, -HUGE):g} to {HUGE:g}"
             point = "; write the decimal point as '.'" if "," in text else ""
             self._add(line, column, text, f"{kind}{bound}{point}")

@@ -75,6 +75,12 @@ def test_published_means_are_read_and_may_be_means_over_all_levels(tmp_path: Pat
     assert (data.rows[1]["group"], data.rows[1]["sd"]) == (None, 3.5)
 
 
+def test_names_with_spaces_around_them_are_found(tmp_path: Path) -> None:
+    schema = replace(SCHEMA, groups=("small", " large"), factors={"condition": ["normal", "fast "]})
+    data = read(tmp_path, "participant,group,condition,wall_angle_deg\n1, large,fast ,50\n", schema)
+    assert [(row["group"], row["condition"]) for row in data.rows] == [(" large", "fast ")]
+
+
 HEAD = "participant,group,aperture,condition,wall_angle_deg\n"
 MEANS = "group,aperture,measure,mean,sd,n,source\n"
 BAD = {
@@ -122,6 +128,14 @@ BAD = {
     ),
     "no value": (HEAD + "1,small,0.4,fast,\n2,small,0.5,fast,\n", r"people.csv: no row has a value of a measure: wall_angle_deg"),
     "huge": (HEAD + "1,small,0.4,fast,1e308\n", r"people.csv:2: .* must be a number from -1e\+100 to 1e\+100 \(got '1e308'\)"),
+    "many digits": (
+        HEAD + f"1,small,0.4,fast,{'9' * 5000}\n",
+        r"people.csv:2: .* must be a number from -1e\+100 to 1e\+100 \(got '9{50,100}\.\.\.'\)$",
+    ),
+    "quote in the last line": (
+        HEAD + '"1,small,0.4,fast,50\n',
+        r"people.csv:2: must have 5 cells, .*; a quote that begins in it may not be closed",
+    ),
     "proportion": (
         MEANS + "small,0.4,turned,1.7,,,X\n",
         r"people.csv:2: column 'mean': must be a number from 0 to 1 \(got '1.7'\)",
