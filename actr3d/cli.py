@@ -202,6 +202,12 @@ def _count(text: str, most: int = MOST) -> int:
     return int(text)
 
 
+def _folder(text: str) -> str:
+    if not text:  # the value of a variable of the shell that is not set
+        raise argparse.ArgumentTypeError("must be the name of a folder (got '')")
+    return text
+
+
 def _workers(text: str) -> int:
     return _count(text, MOST_WORKERS)
 
@@ -287,7 +293,9 @@ def _add_experiment(commands: Any) -> None:
     )
     experiment.add_argument("name", metavar="NAME|FILE|FOLDER", nargs="?", help="a design, a file with one, or the folder of an experiment")
     _add_design_options(experiment)
-    experiment.add_argument("--out", metavar="FOLDER", help="the new folder for the results (default: the name of the design)")
+    experiment.add_argument(
+        "--out", type=_folder, metavar="FOLDER", help="the new folder for the results (default: the name of the design)"
+    )
     experiment.add_argument("--resume", action="store_true", help="continue the experiment that is in the folder")
     experiment.add_argument("--any-version", action="store_true", help="continue although packages have other versions now")
     experiment.add_argument("--check", action="store_true", help="check the design, run two trials, and print what would run")
@@ -344,7 +352,7 @@ def _add_fit(commands: Any) -> None:
         help="simulate N data sets with known parameters, and estimate these (parameter recovery)",
     )
     _add_design_options(fit)
-    fit.add_argument("--out", metavar="FOLDER", help="the folder for the candidates and the result")
+    fit.add_argument("--out", type=_folder, metavar="FOLDER", help="the folder for the candidates and the result")
     fit.add_argument("--json", action="store_true", help="print one JSON object a line")
     fit.set_defaults(function=_fit)
 
@@ -360,7 +368,9 @@ def _add_report(commands: Any) -> None:
     report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
     report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
     report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
-    report.add_argument("--out", metavar="FOLDER", help="the folder for the report (default: report in that of the experiment)")
+    report.add_argument(
+        "--out", type=_folder, metavar="FOLDER", help="the folder for the report (default: report in that of the experiment)"
+    )
     report.set_defaults(function=_report)
 
 

@@ -609,6 +609,13 @@ def test_a_number_that_no_computer_can_run_is_refused(option: str, right: str, t
     assert capsys.readouterr().err.endswith(f"argument {option.split()[0]}: must be a whole number {right}\n")
 
 
+@pytest.mark.parametrize("command", ["experiment FILE", "fit FILE --parameter n=1..3", "report FILE"])
+def test_an_empty_name_of_a_folder_is_refused(command: str, tmp_path: Path, capsys: Any) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main([*command.replace("FILE", str(write_experiment(tmp_path))).split(), "--out", ""])
+    assert capsys.readouterr().err.endswith("argument --out: must be the name of a folder (got '')\n")
+
+
 def test_an_error_about_levels_that_are_given_twice_says_how_to_give_several(tmp_path: Path, capsys: Any) -> None:
     assert main(["experiment", str(write_experiment(tmp_path)), "--set", "n=1", "--set", "n=2"]) == 2
     assert (
