@@ -8,12 +8,13 @@ import re
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from actr3d.errors import ExperimentError, reason_of
 from actr3d.experiment.report.figures import png, svg
 from actr3d.experiment.report.general import analysis_sections, comparison_section, human_section, measure_sections, what_was_run
-from actr3d.experiment.report.page import MADE_BY, page
+from actr3d.experiment.report.page import MADE_BY, distinct, page
 from actr3d.experiment.report.parts import Plot, Section, Table
 from actr3d.experiment.report.reference_means import ReferenceMeans, human_data_of, means_of_experiment, means_of_people
 from actr3d.experiment.report.results import Results, by_number, read_results
@@ -90,6 +91,7 @@ def _check_place(final: Path) -> None:
 
 def _write(final: Path, results: Results, sections: Sequence[Section], *, hint: str) -> None:
     """Writes all files into a new folder, which then replaces the earlier report; the hint follows the error if it cannot be written."""
+    sections = _with_distinct_names(sections)
     try:
         final.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{REPORT} ", dir=final.parent, ignore_cleanup_errors=True) as place:
@@ -111,6 +113,17 @@ def _write(final: Path, results: Results, sections: Sequence[Section], *, hint: 
             _replace(final, part, Path(place))
     except OSError as error:
         raise ExperimentError(f"'{final}': cannot write the report ({reason_of(error)}){hint}") from None
+
+
+def _with_distinct_names(sections: Sequence[Section]) -> list[Section]:
+    """Returns sections whose figures and tables have names that make different files, also on disks that ignore capital letters."""
+    found = list(sections)
+    for kind in (Plot, Table):
+        names = iter(distinct([part.name for section in sections for part in section.parts if isinstance(part, kind)]))
+        for place, section in enumerate(found):
+            parts = [replace(part, name=next(names)) if isinstance(part, kind) else part for part in section.parts]
+            found[place] = replace(section, parts=parts)
+    return found
 
 
 def _replace(final: Path, part: Path, place: Path) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import html
+import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
+from urllib.parse import quote
 
 from actr3d.experiment.report.figures import inline_svg
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -79,10 +81,11 @@ def page(title: str, lead: str, facts: Mapping[str, str], sections: Sequence[Sec
         sections: Its sections.
         drawings: The SVG files of the figures by name.
     """
-    opened = [section for section in sections if not section.folded]
-    links = "".join(f'<li><a href="#{_id(section.title)}">{_text(section.title)}</a></li>' for section in opened)
+    ids = distinct([_id(section.title) for section in sections])
+    opened = [(section, name) for section, name in zip(sections, ids, strict=True) if not section.folded]
+    links = "".join(f'<li><a href="#{name}">{_text(section.title)}</a></li>' for section, name in opened)
     tiles = "".join(f"<div><dt>{_text(name)}</dt><dd>{_text(value)}</dd></div>" for name, value in facts.items())
-    body = "\n".join(_section(section, drawings) for section in sections)
+    body = "\n".join(_section(section, name, drawings) for section, name in zip(sections, ids, strict=True))
     return (
         f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width">\n'
         f"{MADE_BY}\n<title>{_text(title)}</title>\n<style>{CSS}</style>\n</head>\n<body>\n<main>\n"
@@ -91,11 +94,23 @@ def page(title: str, lead: str, facts: Mapping[str, str], sections: Sequence[Sec
     )
 
 
-def _section(section: Section, drawings: Mapping[str, str]) -> str:
+def distinct(names: Sequence[str]) -> list[str]:
+    """Returns names in which each that differs from an earlier one in capital letters at most has a number added."""
+    used: set[str] = set()
+    found: list[str] = []
+    for name in names:
+        different = (f"{name}_{number}" for number in itertools.count(2))
+        new = next(one for one in itertools.chain([name], different) if one.casefold() not in used)
+        used.add(new.casefold())
+        found.append(new)
+    return found
+
+
+def _section(section: Section, name: str, drawings: Mapping[str, str]) -> str:
     parts = "\n".join(_part(part, drawings) for part in section.parts)
     if section.folded:
-        return f'<details class="section" id="{_id(section.title)}"><summary>{_text(section.title)}</summary>\n{parts}\n</details>'
-    return f'<section id="{_id(section.title)}">\n<h2>{_text(section.title)}</h2>\n{parts}\n</section>'
+        return f'<details class="section" id="{name}"><summary>{_text(section.title)}</summary>\n{parts}\n</details>'
+    return f'<section id="{name}">\n<h2>{_text(section.title)}</h2>\n{parts}\n</section>'
 
 
 def _part(part: str | Table | Plot | Caution, drawings: Mapping[str, str]) -> str:
@@ -105,8 +120,8 @@ def _part(part: str | Table | Plot | Caution, drawings: Mapping[str, str]) -> st
         case Caution():
             return f'<div class="caution">{_with_code(part.text)}</div>'
         case Plot():
-            drawing = inline_svg(drawings[part.name], part.name, part.title)
-            links = f'<a href="figures/{part.name}.svg">SVG</a> <a href="figures/{part.name}.png">PNG</a>'
+            drawing = inline_svg(drawings[part.name], quote(part.name).replace("%", "-"), part.title)
+            links = f'<a href="figures/{quote(part.name)}.svg">SVG</a> <a href="figures/{quote(part.name)}.png">PNG</a>'
             return (
                 f'<h3>{_text(part.title)}</h3>\n<figure>\n<div class="plot">{drawing}</div>\n'
                 f'<figcaption>{_text(part.note)} <span class="files">{links}</span></figcaption>\n</figure>'
@@ -124,7 +139,7 @@ def _table(table: Table) -> str:
         "<tr>" + "".join(_cell(name, value, numeric, table) for name, value in row.items()) + "</tr>"
         for row in frame[shown].to_dict("records")
     )
-    link = f'<p class="files"><a href="tables/{table.name}.csv">CSV</a></p>'
+    link = f'<p class="files"><a href="tables/{quote(table.name)}.csv">CSV</a></p>'
     note = f'<p class="note">{_text(table.note)}</p>' if table.note else ""
     body = f'{note}<div class="scroll"><table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div>\n'
     if table.folded or len(frame) > FOLDED:

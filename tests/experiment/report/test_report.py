@@ -11,9 +11,11 @@ import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from html.parser import HTMLParser
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import pytest
 
@@ -134,6 +136,41 @@ def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walk
     assert len(ids) == len(set(ids))
     named = set(re.findall(r"(?:figures|tables)/[\w.]+", text))
     assert named == {name for name in files(walked) if name != "index.html"}, "each file is named on the page"
+
+
+def test_links_and_ids_are_right_for_any_name_of_a_measure(tmp_path: Path) -> None:
+    names = ['x" onclick="alert(1)', "a#b", "a b", "50%41", "q?", "rt", "RT", "<i>", "'&amp;"]
+    path = str(write_experiment(tmp_path, participants=3))
+    folder = store_rows(tmp_path / "out", path, lambda trial: {name: count(trial)["rt"] + n for n, name in enumerate(names)}, trials=2)
+    write_report(folder)
+    found = Links()
+    found.feed(page(folder))
+    assert not [name for name in found.attributes if name.startswith("on")]
+    linked = {unquote(link) for link in found.links if not link.startswith("#")}
+    assert linked == {name for name in files(folder) if name != "index.html"}
+    assert len({name.casefold() for name in linked}) == len(linked), "some disks do not distinguish capital letters"
+    assert len(linked) > 3 * len(names)
+    assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
+    assert len(found.ids) == len(set(found.ids))
+    assert all(re.fullmatch(r"[^\s\"'<>()%]+", one) for one in found.ids)
+
+
+class Links(HTMLParser):
+    """Collects the attributes, ids and links of a page."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.attributes: set[str] = set()
+        self.ids: list[str] = []
+        self.links: set[str] = set()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.attributes |= set(given)
+        if one := given.get("id"):
+            self.ids.append(one)
+        if tag == "a" and (link := given.get("href")):
+            self.links.add(link)
 
 
 def test_people_are_compared_at_the_levels_that_the_experiment_has(tmp_path: Path) -> None:
