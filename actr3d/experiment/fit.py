@@ -596,7 +596,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     trial_has = measures_of(experiment)
     for_report = {*columns_of_people([*trial_has, *design.known_columns])} - {*trial_has, measure}
     ignored = {*OWN_COLUMNS, *design.known_columns, *for_report} - {"participant", "group", *names.values()}
-    if "measure" in file.columns:
+    if "measure" in file.columns and file.is_published(trial_has):
         measures = file.cells("measure")
     else:
         there = [column for column in file.columns if factor_name(column) not in {"participant", "group", *levels, *ignored}]

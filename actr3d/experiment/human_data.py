@@ -212,6 +212,11 @@ class HumanFile:
         place = self.columns.index(column)
         return [cells[place] for _, cells in self._lines[1:] if len(cells) > place]
 
+    def is_published(self, measures: Sequence[str]) -> bool:
+        """Returns whether the file has published means: the columns `measure` or `mean`, unless these are measures in trials of people."""
+        names = set(self.columns) & {"measure", "mean"}
+        return bool(names - set(measures) if "participant" in self.columns else names)
+
     def read(self, schema: Schema) -> HumanData:
         """Returns the data.
 
@@ -226,7 +231,7 @@ class HumanFile:
         if not self._lines:
             raise ExperimentError(f"{self._path}: is empty; the first line must name the columns")
         line, head = self._lines[0]
-        published = "measure" in head or "mean" in head
+        published = self.is_published(schema.measures)
         if not published:  # the table of trials has factors by their own names
             head = [shown if (shown := factor_name(name)) in self._schema.factors else name for name in head]
         self._check_head(line, head, published)

@@ -75,6 +75,15 @@ def test_published_means_are_read_and_may_be_means_over_all_levels(tmp_path: Pat
     assert (data.rows[1]["group"], data.rows[1]["sd"]) == (None, 3.5)
 
 
+@pytest.mark.parametrize("name", ["mean", "measure"])
+def test_trials_may_have_a_measure_whose_name_published_means_have_too(name: str, tmp_path: Path) -> None:
+    schema = replace(SCHEMA, measures=("wall_angle_deg", name))
+    data = read(tmp_path, f"participant,group,aperture,{name}\n1,small,0.4,50\n", schema)
+    assert not data.published
+    assert (data.measures, data.rows[0][name]) == ([name], 50)
+    assert read(tmp_path, MEANS + f"small,0.4,{name},5,1,5,X\n", schema).published
+
+
 def test_names_with_spaces_around_them_are_found(tmp_path: Path) -> None:
     schema = replace(SCHEMA, groups=("small", " large"), factors={"condition": ["normal", "fast "]})
     data = read(tmp_path, "participant,group,condition,wall_angle_deg\n1, large,fast ,50\n", schema)

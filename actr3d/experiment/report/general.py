@@ -159,7 +159,8 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, re
         return Section(title="Human data", parts=[why, "Figures show the model only."])
     people = len({(row["group"], row["participant"]) for row in data.rows}) if not data.published else 0
     kind = "published means" if data.published else f"trials of {people} {'person' if people == 1 else 'people'}"
-    found: list[str | Table | Plot | Caution] = [f"{data.name}: {len(data.rows):,} rows of {kind}.", *(f"{note}" for note in data.notes)]
+    count = "1 row" if len(data.rows) == 1 else f"{len(data.rows):,} rows"
+    found: list[str | Table | Plot | Caution] = [f"{data.name}: {count} of {kind}.", *(f"{note}" for note in data.notes)]
     if data.published:
         found += [f"Source: {source}" for source in data.sources]
         found.append("Intervals of published means follow from their SD and n (t distribution); means without these have none.")

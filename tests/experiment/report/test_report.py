@@ -295,6 +295,15 @@ def test_published_speeds_are_shown_with_their_source(tmp_path: Path) -> None:
     assert "doi 10.1037/0096-1523.13.3.371" in page(folder)
 
 
+def test_one_row_of_human_data_is_not_called_rows(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=1))
+    people = tmp_path / "people.csv"
+    people.write_text("participant,n,rt\na,1,0.5\n", encoding="utf-8")
+    folder = store_rows(tmp_path / "out", path, count, trials=1)
+    write_report(folder, human=people)
+    assert "people.csv: 1 row of trials of 1 person." in page(folder)
+
+
 def test_own_human_data_are_drawn_and_compared(walked: Path) -> None:
     fit = next(row for row in table(walked, "fit_to_people") if row["measure"] == "wall_angle_deg")
     assert fit["cells"] == "6"
