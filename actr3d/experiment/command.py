@@ -107,10 +107,10 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(_shown, levels))}")
-    for group, own in facts["group_parameters"].items():
-        for name, value in own.items():
+    for group, own in design.groups.items():
+        for name, value in own.parameters.items():
             out.line(f"  {name} of {group}: {_shown(value)}")
-    for name, value in facts["settings"].items():
+    for name, value in design.settings.items():
         out.line(f"  {name}: {_shown(value)}")
     out.line(f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / processors():,.0f} s on this computer")
     if ended_early((first["end"], second["end"])):
