@@ -152,7 +152,7 @@ def _bytes(path: Path | str) -> bytes:
     """Returns what a file holds, or a pipe receives, up to one byte more than is allowed.
 
     Raises:
-        OSError: If it cannot be read, or is a pipe to which no program writes.
+        OSError: If it cannot be read, or is a pipe to which nothing is written in time.
     """
     with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
         begin: bytes | None = b""
@@ -161,10 +161,11 @@ def _bytes(path: Path | str) -> bytes:
             # Without a writer, reading returns nothing at once; with one that has not written yet, it returns None.
             while (begin := file.raw.read(1)) == b"":
                 if time.monotonic() > end:
-                    raise OSError("it is a pipe to which no program writes")
+                    raise OSError(f"it is a pipe, and nothing was written to it within {PATIENCE:g} s")
                 time.sleep(0.02)
         os.set_blocking(file.fileno(), True)
-        return (begin or b"") + file.read(MAX_BYTES + 1)
+        begin = begin or b""
+        return begin + file.read(MAX_BYTES + 1 - len(begin))
 
 
 class HumanFile:
