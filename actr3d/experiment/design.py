@@ -451,20 +451,20 @@ class Design(Configuration):
                 of_groups.setdefault(name, {})[group_name] = value
         return {**of_groups, "--trials": self.trials, **self.factors, **self.settings, **own}
 
-    def _compared(self) -> dict[str, Any]:
-        """Returns all values of the design by name, without its functions."""
+    def all_values(self) -> dict[str, Any]:
+        """Returns all values by name, without functions: those of `changeable`, and `Design.model`, `Design.order` and the like."""
         return {**self.changeable(), **{f"Design.{name}": getattr(self, name) for name in ("model", "measures", "order", "human")}}
 
     def changed_names(self, there: Design) -> list[str]:
-        """Returns the names of the values that differ from those of another design: as in `changeable`, or `Design.order` and the like."""
-        before, now = there._compared(), self._compared()
+        """Returns the names of the values that differ from those of another design, as in `all_values`."""
+        before, now = there.all_values(), self.all_values()
         return [name for name in {**before, **now} if name not in before or name not in now or _key(before[name]) != _key(now[name])]
 
     def differences_from(self, there: Design) -> list[str]:
         """Returns in words which values differ from those of another design ("there")."""
         found: list[str] = []
         for name in self.changed_names(there):
-            before, now = (repr(given[name]) if name in given else "not set" for given in (there._compared(), self._compared()))
+            before, now = (repr(given[name]) if name in given else "not set" for given in (there.all_values(), self.all_values()))
             found.append(f"{name}: {before} there, {now} now")
         return found
 
