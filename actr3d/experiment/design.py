@@ -38,6 +38,8 @@ FINEST = 1e-5
 """The least standard deviation of a distribution."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
+RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
+"""Names of columns of human data and of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
 OWN_NUMBERS = ("seed", "until", "limit")
 """Numbers of a design that `Design.changed` changes under these names."""
 
@@ -280,7 +282,10 @@ class Design(Configuration):
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
         if isinstance(self.measures, (str, bytes)):
             raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
-        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}
+        given, columns = [one.name for one in self.kept], self.taken
+        for name in self.factors:
+            if (shown := factor_name(name)) != name and shown in {*self.factors, *given}:
+                raise DesignError(f"Design: '{shown}' is what reports call the factor '{name}'; rename one of them", shown)
         for measure in self.kept:
             if given.count(measure.name) > 1:
                 raise DesignError(f"Design.measures: '{measure.name}' is there twice", measure.name)
@@ -293,6 +298,12 @@ class Design(Configuration):
                 raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
             if name in OWN_NUMBERS:
                 raise DesignError(f"Design: '{name}' is a number of the design itself; rename the parameter", name)
+
+    @cached_property
+    def taken(self) -> frozenset[str]:
+        """The names that no measure can have, because other columns have them in the table of trials or in a report."""
+        grouped = {name for group in self.groups.values() for name in group.parameters}
+        return frozenset({*self.factors, *map(factor_name, self.factors), *self.settings, *grouped, *OWN_COLUMNS})
 
     @property
     def kept(self) -> tuple[Measured, ...]:
@@ -628,6 +639,11 @@ def text_cell(value: Any) -> str | None:
     if value is None or isinstance(value, str):
         return value
     return None if isinstance(value, float) and math.isnan(value) else plain_text(value)
+
+
+def factor_name(name: str) -> str:
+    """Returns the name of a factor in human data and in the tables of a report."""
+    return f"{name}_" if name in RESERVED else name
 
 
 def _key(value: Any) -> Any:

@@ -33,9 +33,9 @@ from numpy.typing import NDArray
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import ExperimentProgress, run_experiment
-from actr3d.experiment.design import DIGITS, HUGE, OWN_COLUMNS, OWN_NUMBERS, Design, Measured, plain_text
+from actr3d.experiment.design import DIGITS, HUGE, OWN_COLUMNS, OWN_NUMBERS, Design, Measured, factor_name, plain_text
 from actr3d.experiment.emulator import STEPS, Emulator
-from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels
+from actr3d.experiment.human_data import HumanFile, Schema, library_human_data, plain_levels
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r
 from actr3d.experiment.specification import Experiment

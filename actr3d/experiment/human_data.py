@@ -42,7 +42,7 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean, reason_of
-from actr3d.experiment.design import HUGE, plain_text
+from actr3d.experiment.design import HUGE, factor_name, plain_text
 from actr3d.parameter_schema import Parameter
 
 FOLDER = Path(__file__).parent / "human"
@@ -55,13 +55,6 @@ PATIENCE = 5.0
 """The maximum time in which a program must open a pipe to write human data to it [s]; then it may take as long as it needs."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
 """The columns of published means that are not factors."""
-RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
-"""Names of columns of human data and of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
-
-
-def factor_name(name: str) -> str:
-    """Returns the name of a factor in human data and in the tables of a report."""
-    return f"{name}_" if name in RESERVED else name
 
 
 def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:

@@ -492,6 +492,14 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
             r"d\.py:5: Design\.measures: 'n' is there twice",
         ),
         (
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(factors={'n': [1, 2]},\n    measures=['n_'])\n",
+            r"d\.py:6: Design: 'n_' is what reports call the factor 'n'; rename one of them",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n  return Design(factors={'n': [1],\n    'n_': [1]})\n",
+            r"d\.py:5: Design: 'n_' is what reports call the factor 'n'; rename one of them",
+        ),
+        (
             "from actr3d.experiment import *\ntime = 1\n@design\ndef a():\n  return Design(\n    measures='time')\n",
             r"d\.py:6: Design\.measures: must be a list of names \(got 'time'\)",
         ),
