@@ -38,9 +38,12 @@ class MT19937(numpy.random.MT19937):
 
 
 class Numbers(NamedTuple):
-    """The source of numpy's global random numbers."""
+    """The state of all global random numbers."""
 
+    pythons: Any
+    """The state of `random`; None before the start of a run, which seeds it."""
     bits: BitGenerator
+    """The source of numpy's."""
     rest: Any
     """The state beside the generator; for another kind of generator, all of its state."""
 
@@ -55,8 +58,8 @@ class GlobalRandom:
     __slots__ = ("_depth", "_others", "_own")
 
     def __init__(self) -> None:
-        self._own: tuple[Any, Numbers] = (None, _own_numbers())
-        self._others: tuple[Any, Numbers] | None = None
+        self._own = Numbers(None, MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
+        self._others: Numbers | None = None
         self._depth = 0
 
     def __enter__(self) -> None:
@@ -93,23 +96,7 @@ class GlobalRandom:
         _put(self._others)
 
 
-def _present() -> tuple[Any, Numbers]:
-    return random.getstate(), _present_numbers()
-
-
-def _put(numbers: tuple[Any, Numbers]) -> None:
-    state, of_numpy = numbers
-    if state is not None:  # a run seeds its own at its start
-        random.setstate(state)
-    _put_numbers(of_numpy)
-
-
-def _own_numbers() -> Numbers:
-    """Returns new, unshared numbers; the caller seeds them."""
-    return Numbers(MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
-
-
-def _present_numbers() -> Numbers:
+def _present() -> Numbers:
     """Returns the present numbers, to restore them later."""
     bits = NUMPY.get_bit_generator()
     if type(bits) is NUMPY.MT19937:
@@ -118,11 +105,12 @@ def _present_numbers() -> Numbers:
         NUMPY.set_bit_generator(bits)
         NUMPY.set_state(state)
     with _apart(bits):
-        return Numbers(bits, NUMPY.get_state(legacy=False))
+        return Numbers(random.getstate(), bits, NUMPY.get_state(legacy=False))
 
 
-def _put_numbers(numbers: Numbers) -> None:
-    """Sets numpy's global random numbers."""
+def _put(numbers: Numbers) -> None:
+    if numbers.pythons is not None:
+        random.setstate(numbers.pythons)
     NUMPY.set_bit_generator(numbers.bits)
     with _apart(numbers.bits):
         NUMPY.set_state(numbers.rest)

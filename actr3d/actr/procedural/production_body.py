@@ -131,11 +131,7 @@ def compile_body(
 _CODES: dict[Any, tuple[CodeType, Sequence[str]]] = {}
 MAX_CODES = 10_000
 """The number of bodies whose code is kept."""
-
-
-@lru_cache(maxsize=MAX_CODES)
-def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
-    return used_names(statements)
+_names_of = lru_cache(maxsize=MAX_CODES)(used_names)
 
 
 def _code_of(
