@@ -55,22 +55,22 @@ class GlobalRandom:
     nested; only the outermost takes time, about 20 us. Simulations in two threads at once still share them.
     """
 
-    __slots__ = ("_depth", "_others", "_own")
+    __slots__ = ("_depth", "_kept")
 
     def __init__(self) -> None:
-        self._own = Numbers(None, MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
-        self._others: Numbers | None = None
+        self._kept = Numbers(None, MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
+        """Those that are not in place: outside the block the simulation's own, inside it the others."""
         self._depth = 0
 
     def __enter__(self) -> None:
         if not self._depth:
-            self._put_in_place()
+            self._exchange()
         self._depth += 1
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         self._depth -= 1
         if not self._depth:
-            self._put_back()
+            self._exchange()
 
     @contextmanager
     def aside(self) -> Generator[None]:
@@ -79,21 +79,17 @@ class GlobalRandom:
             yield
             return
         depth, self._depth = self._depth, 0
-        self._put_back()
+        self._exchange()
         try:
             yield
         finally:
-            self._put_in_place()
+            self._exchange()
             self._depth = depth
 
-    def _put_in_place(self) -> None:
-        self._others = _present()
-        _put(self._own)
-
-    def _put_back(self) -> None:
-        self._own = _present()
-        assert self._others is not None
-        _put(self._others)
+    def _exchange(self) -> None:
+        """Puts the simulation's own numbers in the place of the others, or the others back."""
+        kept, self._kept = self._kept, _present()
+        _put(kept)
 
 
 def _present() -> Numbers:
