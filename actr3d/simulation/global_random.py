@@ -88,8 +88,12 @@ class GlobalRandom:
 
     def _exchange(self) -> None:
         """Puts the simulation's own numbers in the place of the others, or the others back."""
-        kept, self._kept = self._kept, _present()
-        _put(kept)
+        numbers, self._kept = self._kept, _present()
+        if numbers.pythons is not None:
+            random.setstate(numbers.pythons)
+        NUMPY.set_bit_generator(numbers.bits)
+        with _apart(numbers.bits):
+            NUMPY.set_state(numbers.rest)
 
 
 def _present() -> Numbers:
@@ -102,14 +106,6 @@ def _present() -> Numbers:
         NUMPY.set_state(state)
     with _apart(bits):
         return Numbers(random.getstate(), bits, NUMPY.get_state(legacy=False))
-
-
-def _put(numbers: Numbers) -> None:
-    if numbers.pythons is not None:
-        random.setstate(numbers.pythons)
-    NUMPY.set_bit_generator(numbers.bits)
-    with _apart(numbers.bits):
-        NUMPY.set_state(numbers.rest)
 
 
 @contextmanager
