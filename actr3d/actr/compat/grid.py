@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
@@ -16,6 +17,8 @@ from actr3d.warnings import warn_modeller
 
 COMPASS = ((0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1))
 """The steps (x, y) to the eight neighbours, clockwise from north; y grows downwards, as the lines of a map do."""
+
+NO_WORLD = "this cell is part of no world; a world makes its cells itself"
 
 
 class Cell:
@@ -34,6 +37,10 @@ class Cell:
     agents: list[Any]
     """The agents whose bodies are here, in the order in which they arrived."""
     _world: World | None = None
+    _find: Callable[[Cell, int], Cell] | None = None
+    """Finds a neighbouring cell in the world; None before the cell is in one."""
+    _report: Callable[[Cell, str, Any], None] | None = None
+    """Reports a change to the world; None before the cell is in one."""
 
     def load(self, char: str) -> None:
         """Initializes the cell from its character of the map; for subclasses. A `#` is a wall."""
@@ -47,7 +54,7 @@ class Cell:
             GridError: If it has none.
         """
         if self._world is None:
-            raise GridError("this cell is part of no world; a world makes its cells itself")
+            raise GridError(NO_WORLD)
         return self._world
 
     @property
@@ -64,12 +71,14 @@ class Cell:
         Raises:
             GridError: If the cell is in no world.
         """
-        return self.world._neighbour(self, eighths)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+        if self._find is None:
+            raise GridError(NO_WORLD)
+        return self._find(self, eighths)
 
     def __setattr__(self, key: str, value: Any) -> None:
         object.__setattr__(self, key, value)
-        if key[0] != "_" and self._world is not None:
-            self._world._cell_changed(self, key, value)  # pyright: ignore[reportPrivateUsage] # the same
+        if key[0] != "_" and self._report is not None:
+            self._report(self, key, value)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.x},{self.y}>" if self._world is not None else f"<{type(self).__name__}>"
@@ -355,7 +364,7 @@ class World(Model):
 
     def _make(self, x: int, y: int) -> Cell:
         cell = self._kind()
-        cell.__dict__.update(x=x, y=y, agents=[], _world=self)
+        cell.__dict__.update(x=x, y=y, agents=[], _world=self, _find=self._neighbour, _report=self._cell_changed)
         return cell
 
     # -- cells

@@ -147,10 +147,6 @@ class ACTR(ProductionSystem):
             for production in self._productions:
                 trace_utility_parts(self, production, trace)
 
-    def _drawn_names(self) -> list[str]:
-        any_one = self._productions[0] if self._productions else None
-        return [] if any_one is None else [name for name, value in self._utility_parts(any_one).items() if value is None]
-
     def _part_names(self) -> list[str]:
         return ["get_activation"] if self._own_utility else [adaptor.name for adaptor in self._adaptors]
 
