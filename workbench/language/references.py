@@ -16,7 +16,7 @@ from workbench.language.answers import LanguageError, Renaming
 from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.library_words import gives_joints, joints, slots_given
-from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, SlotName
+from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, Written
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
 from workbench.language.tokens import line_of
@@ -262,7 +262,7 @@ class References:
     def _variables(text: ChunkText) -> list[Piece]:
         return [piece for piece in text.pieces if piece.is_variable]
 
-    def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
+    def _of_slot(self, text: ChunkText, slot: Written) -> Meaning | None:
         """Returns the meaning of a slot in a text: an attribute in a pattern of a module or of the agent; None if it is not known."""
         if "." in slot.text:  # a path
             return None
