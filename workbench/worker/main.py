@@ -19,12 +19,11 @@ from actr3d.actr.loading.source_text import compile_source
 from actr3d.output import ModelOutput
 from actr3d.runner.before_exit import before_the_end, end_at_once
 from actr3d.runner.build_check import check_build
-from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import notice_of
 from workbench.worker.memory import watch_memory
-from workbench.worker.messages import MAX_PRINTED, Reply, WorkerEnded, notice
+from workbench.worker.messages import MAX_PRINTED, WorkerEnded, notice
 from workbench.worker.orphans import adopt
 from workbench.worker.run_controller import RunController
 
@@ -112,10 +111,10 @@ def _run(channel: Channel, controller: RunController) -> None:
     check_build(start.source, start.path)
     listing = listing_of(start.source, start.path)
     if start.job == "check":
-        from workbench.worker.simulation_run import check
+        if listing.kind == "simulation":
+            from workbench.worker.simulation_run import check
 
-        result = check(start.source, start.path, Path(start.folder)) if listing.kind == "simulation" else {}
-        channel.post(Reply(id=0, result=to_json(result).encode()))
+            check(start.source, start.path, Path(start.folder))
     elif listing.kind == "simulation":
         from workbench.worker.simulation_run import SimulationRun
 
