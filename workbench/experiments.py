@@ -533,10 +533,7 @@ class Experiments:
         folder = self.folder(name)
         if not folder.made_here:
             if not trust:
-                raise PermissionNeededError(
-                    "this installation did not make the experiment (or it was changed since), and the code in it would be run: "
-                    'send "trust": true if you know where it comes from'
-                )
+                raise PermissionNeededError("experiment")
             folder.seal()
         return folder
 

@@ -37,9 +37,15 @@ class NoSuchSessionError(SessionError):
 
 
 class PermissionNeededError(SessionError):
-    """Code of a recording that this installation did not make would be run without the user's permission."""
+    """Code of a recording or experiment that this installation did not make would be run without the user's permission."""
 
     status = 403
+
+    def __init__(self, what: str) -> None:
+        super().__init__(
+            f"this installation did not make the {what} (or it was changed since), and the code in it would be run: "
+            'send "trust": true if you know where it comes from'
+        )
 
 
 class Sessions:
@@ -144,10 +150,7 @@ class Sessions:
         """
         start = await self.recorded_start(recording)
         if not (start.made_here or trust):
-            raise PermissionNeededError(
-                "this installation did not make the recording (or it was changed since), and the code in it would be run: "
-                'send "trust": true if you know where it comes from'
-            )
+            raise PermissionNeededError("recording")
         return start
 
     async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False, record: bool = True) -> Session:
