@@ -66,14 +66,10 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
     # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
-    page = (folder / "page.html").read_text(encoding="utf-8")
-    parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": _read(folder, "style.css"), "SCRIPT": _scripts(folder)}
+    page, style = ((folder / name).read_text(encoding="utf-8") for name in ("page.html", "style.css"))
+    parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": style, "SCRIPT": _scripts(folder)}
     pieces = page.split("@@")
     to.write_text("".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces)), encoding="utf-8")
-
-
-def _read(folder: Path, name: str) -> str:
-    return (folder / name).read_text(encoding="utf-8")
 
 
 def _scripts(folder: Path) -> str:
@@ -165,11 +161,7 @@ def _value(value: Any) -> str:
     """Returns a value as the trace shows it: with at most four decimals."""
     if isinstance(value, float):
         return np.format_float_positional(value, 4, trim="-")
-    return "none" if value is None else _word(value)
-
-
-def _word(value: Any) -> str:
-    return value if isinstance(value, str) else to_json(value)
+    return "none" if value is None else value if isinstance(value, str) else to_json(value)
 
 
 def _agent(event: TraceEvent) -> str:
