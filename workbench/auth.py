@@ -110,12 +110,7 @@ class Gate:
 
 
 class Guard:
-    """Admits requests that have the token and come from the workbench's own page, refuses all others, and adds headers to all responses.
-
-    Args:
-        app: The application to protect.
-        gate: Grants or refuses access.
-    """
+    """Admits requests that have the token and come from the workbench's own page, refuses all others, and adds headers to all responses."""
 
     def __init__(self, app: ASGIApp, gate: Gate) -> None:
         self._app = app

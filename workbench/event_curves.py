@@ -31,11 +31,7 @@ MAX_CURVES = 5_000
 
 
 class _EventCurve:
-    """The values of one curve, each with its time.
-
-    Args:
-        about: What it is.
-    """
+    """The values of one curve, each with its time."""
 
     __slots__ = ("about", "slope", "times", "total", "value", "values")
 

@@ -33,11 +33,7 @@ class TableError(Actr3dError):
 
 
 def counts(*paths: Path) -> list[dict[str, Any]]:
-    """Returns the numbers of finished and of failed trials of experiments, and their columns; `problem` says why a table cannot be read.
-
-    Args:
-        paths: The tables.
-    """
+    """Returns the numbers of finished and of failed trials of experiments, and their columns; `problem` says why a table cannot be read."""
     found: list[dict[str, Any]] = []
     for path in paths:
         try:
@@ -74,9 +70,6 @@ def _opened(path: Path) -> sqlite3.Connection:
 
 class Table:
     """The table of trials of an experiment.
-
-    Args:
-        path: The SQLite file.
 
     Raises:
         Actr3dError: If it cannot be read.

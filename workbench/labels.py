@@ -47,11 +47,7 @@ class Label(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Labels:
-    """Reads and writes the labels of the recordings in a folder.
-
-    Args:
-        folder: The folder of the recordings.
-    """
+    """Reads and writes the labels of the recordings in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / FILE

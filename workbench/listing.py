@@ -28,13 +28,7 @@ _Stamp = tuple[int, ...]
 
 
 class Listing:
-    """Reads summaries of recordings and caches them until their files change.
-
-    Args:
-        recordings: The recordings.
-        workers: The pool that starts workers.
-        models: The models folder.
-    """
+    """Reads summaries of recordings and caches them until their files change."""
 
     def __init__(self, recordings: Recordings, workers: Workers, models: Path) -> None:
         self._recordings = recordings
@@ -132,12 +126,7 @@ class Listing:
 
 
 class _Reading(Job):
-    """Collects the summaries that one worker reads.
-
-    Args:
-        paths: The files to read.
-        found: Called with each path and its summary.
-    """
+    """Collects the summaries that one worker reads."""
 
     def __init__(self, paths: Sequence[Path], found: Callable[[Path, Summary], None]) -> None:
         super().__init__()

@@ -29,11 +29,7 @@ class ReadingError(Actr3dError):
 
 
 class Readers:
-    """Reads recordings in workers, which write the results to files.
-
-    Args:
-        workers: The pool that starts workers.
-    """
+    """Reads recordings in workers, which write the results to files."""
 
     def __init__(self, workers: Workers) -> None:
         self._workers = workers

@@ -49,13 +49,7 @@ class PermissionNeededError(SessionError):
 
 
 class Sessions:
-    """Starts and ends sessions.
-
-    Args:
-        folder: The folder of the models.
-        recordings: The folder of the recordings.
-        workers: The pool that starts workers.
-    """
+    """Starts and ends sessions."""
 
     def __init__(self, folder: ModelFolder, recordings: Recordings, workers: Workers) -> None:
         self.folder = folder

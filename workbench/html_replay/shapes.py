@@ -37,9 +37,6 @@ def packed(numbers: Any, kind: str) -> str:
 class Shapes:
     """Collects what is drawn of a scene, one shape for each MuJoCo body, without planes.
 
-    Args:
-        model: The compiled scene.
-
     Raises:
         RecordingError: If the scene has too many triangles.
     """

@@ -14,14 +14,7 @@ _ASSIGNED = re.compile(r"\s*(?:=(?!=)|:)")
 
 
 class ClassMembers:
-    """The members of the classes of a text: methods, parts, and attributes, also those that only methods set.
-
-    Args:
-        model: The text.
-        explicit: The same, with what ACT-R adds to it.
-        python: Answers questions about plain Python.
-        path: The file of the text.
-    """
+    """The members of the classes of a text: methods, parts, and attributes, also those that only methods set."""
 
     def __init__(self, model: ModelText, explicit: ExplicitText, python: PythonAnswers, path: str) -> None:
         self._model = model

@@ -168,11 +168,7 @@ class _Block:
 
 
 class ModelText:
-    """What the text of a model says, as far as it can be read.
-
-    Args:
-        text: The text.
-    """
+    """What the text of a model says, as far as it can be read."""
 
     def __init__(self, text: str) -> None:
         self.text = text

@@ -227,12 +227,7 @@ class PythonAnswers:
 
 
 class PythonExpressions:
-    """Answers questions about expressions that are written after the end of a text.
-
-    Args:
-        script: Returns jedi's access to some code.
-        text: The text.
-    """
+    """Answers questions about expressions that are written after the end of a text."""
 
     def __init__(self, script: Callable[[str], jedi.Script], text: str) -> None:
         self._script = script

@@ -59,13 +59,7 @@ _LIBRARY = Meaning(what="local", owners=frozenset({"library"}))
 
 
 class References:
-    """The words of a text, and what they mean.
-
-    Args:
-        model: The text.
-        python: Answers questions about plain Python.
-        path: The file of the text.
-    """
+    """The words of a text, and what they mean."""
 
     def __init__(self, model: ModelText, python: PythonAnswers, path: str) -> None:
         self.model = model

@@ -50,9 +50,6 @@ class Overlay(ABC):
 
     An overlay is a subclass with the decorator `@overlay`, in a file of this folder: `data` runs in the worker of the run, `draw` in
     the server.
-
-    Args:
-        canvas: The 3D view to draw in.
     """
 
     name: ClassVar[str]

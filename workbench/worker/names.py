@@ -141,12 +141,7 @@ def there_are(known: Iterable[str]) -> str:
 
 
 def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
-    """Returns the names of the things in models.
-
-    Args:
-        tops: The top models, or the agents of a simulation.
-        bodies: The bodies.
-    """
+    """Returns the names of the things in models."""
     productions: set[str] = set()
     buffers: set[str] = set()
     modules: set[str] = set()
@@ -173,15 +168,7 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
 
 
 def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: ModelListing, source: str, folder: Path) -> Names:
-    """Returns the names of the things in a program, as far as it has run.
-
-    Args:
-        tops: The models that have been created.
-        bodies: The bodies of the simulation on screen.
-        listing: The description read from its text.
-        source: Its text.
-        folder: The folder of its helper modules.
-    """
+    """Returns the names of the things in a program, as far as it has run."""
     made = names_of(tops, bodies)
     written = {name.rpartition(".")[2] for name in listing.productions}
     productions = made.productions | written

@@ -141,12 +141,7 @@ class _PassRecorder:
 
 
 class ProgramRun(ControlledRun):
-    """Runs a program under a controller; its time is that of all its runs, one after the other.
-
-    Args:
-        controller: Decides when it continues.
-        listing: The description read from the model's text.
-    """
+    """Runs a program under a controller; its time is that of all its runs, one after the other."""
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         start = controller.channel.start

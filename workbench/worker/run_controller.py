@@ -52,11 +52,7 @@ class Leaving(EndOfRun):
 
 
 class RunController:
-    """Decides when a run continues and when it waits, carries out users' commands in between, and sends its state and events.
-
-    Args:
-        channel: The connection to the server.
-    """
+    """Decides when a run continues and when it waits, carries out users' commands in between, and sends its state and events."""
 
     def __init__(self, channel: Channel) -> None:
         start = channel.start
@@ -172,9 +168,6 @@ class RunController:
         """Sends at intervals how far a seek has come, and carries out commands that cancel it.
 
         Other commands wait until the run is there.
-
-        Args:
-            cancellable: Whether users can cancel it.
         """
         if perf_counter() - self._shown < HURRIED:
             return

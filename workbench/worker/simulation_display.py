@@ -107,11 +107,7 @@ class SimulationDisplay:
         return CurveReader(from_bytes(self.mj_model), self.surroundings)
 
     def colours(self, geoms: Mapping[int, tuple[int, ...]]) -> dict[int, str]:
-        """Returns the colours with which objects are drawn in the scene, by label.
-
-        Args:
-            geoms: The geoms of each object, by label.
-        """
+        """Returns the colours with which objects are drawn in the scene, by label."""
         return {label: self._colour_of(own) for label, own in geoms.items()}
 
     @cached_property

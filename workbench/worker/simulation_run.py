@@ -44,12 +44,7 @@ ENDINGS = {"stop": "the model called stop()", "done": "no agent has anything lef
 
 
 class SimulationRun(ControlledRun):
-    """Runs a simulation under a controller.
-
-    Args:
-        controller: Decides when it continues.
-        listing: The description read from the model's text.
-    """
+    """Runs a simulation under a controller."""
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         self._controller = controller
