@@ -48,7 +48,7 @@ class SimulationDisplay:
         self.surroundings = surroundings(simulation.world)
         self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
-    def world(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
+    def world(self, parameters: Iterable[Parameter] = ()) -> dict[str, Any]:
         """Returns the description of the world for pages, as plain values.
 
         Args:
