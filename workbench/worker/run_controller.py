@@ -381,6 +381,7 @@ class RunController:
         trace = run.trace
         count = len(trace)
         physics, apertures = run.scene()
+        shown = run.shown
         state = State(
             status=self.status,
             reason=self.reason,
@@ -395,9 +396,9 @@ class RunController:
             parts=bounded_json(run.parts(), whole=plain_to_json),
             apertures=apertures,
             parameters=bounded_json(run.changed_parameters()),
-            result=bounded_json(run.result() if self.status == "ended" else None),
+            result=bounded_json(shown.result() if shown is not None and self.status == "ended" else None),
             physics=physics,
-            overlay_data=run.overlay_data(self._overlays) if self._overlays else {},
+            overlay_data=shown.overlay_data(self._overlays) if shown is not None and self._overlays else {},
         )
         with self._sending:
             self._send(state, trace)
