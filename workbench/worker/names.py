@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -170,11 +170,9 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
 def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: ModelListing, source: str, folder: Path) -> Names:
     """Returns the names of the things in a program, as far as it has run."""
     made = names_of(tops, bodies)
-    written = {name.rpartition(".")[2] for name in listing.productions}
-    productions = made.productions | written
+    productions = made.productions | {name.rpartition(".")[2] for name in listing.productions}
     hidden = not productions or _has_helpers(source, folder)
-    growing = frozenset(("production", "buffer") if hidden else ("buffer",))
-    return Names(productions=productions, buffers=made.buffers, bodies=made.bodies, modules=made.modules, fed=made.fed, growing=growing)
+    return replace(made, productions=productions, growing=frozenset(("production", "buffer") if hidden else ("buffer",)))
 
 
 def _has_helpers(source: str, folder: Path) -> bool:
