@@ -113,7 +113,11 @@ class References:
             line = self._line(min(unproven))
             shown = self._written(min(unproven)) or word
             raise LanguageError(f"'{word}' cannot be renamed: whether '{shown}' in line {line} is the same is not known", line=line)
-        if meaning.what == "member" and what != "part" and not any(self._defines(place) for place in starts):
+        if (
+            meaning.what == "member"
+            and what != "part"
+            and not any(self._scopes.is_definition(self.explicit.place(start)) for start in starts)
+        ):
             raise LanguageError(unknown)
         return Renaming(name=word, what=what, starts=sorted(starts))
 
@@ -133,7 +137,8 @@ class References:
             strings |= self._as_values(word)
         elif target.meaning.what == "member":
             values = {at for at in self._as_values(word) if self._scopes.may_name_member(self.explicit.place(at))}
-            strings |= values if self._is_part(word, target.meaning) else {at for at in values if self._is_alone(at, word)}
+            whole = {at for at in values if (at, at + len(word)) in self.model.other_texts}  # strings that hold nothing but the word
+            strings |= values if self._is_part(word, target.meaning) else whole
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._may_be_used(at, target.meaning)}
         if self._is_feature(word, target.meaning):  # which requests and patterns name in lower case: feature:pole
@@ -186,10 +191,6 @@ class References:
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
         agents = [self.model.agents[one] for agent in own for one in sorted(self.members.family(agent, word))]
         yield from (agent.parts[word] for agent in agents if word in agent.parts)
-
-    def _is_alone(self, at: int, word: str) -> bool:
-        """Returns whether the word at a position is all that its string holds."""
-        return (at, at + len(word)) in self.model.other_texts
 
     def _may_be_used(self, at: int, variable: Meaning) -> bool:
         """Returns whether a production of a variable has the text at a position, itself or by the name of a constant."""
@@ -508,6 +509,3 @@ class References:
                     f"'{slot}' may be a joint in the chunks of {kind.__name__}, and keeps its name here", line=self._line(at)
                 )
         self._check_read(slot, at)
-
-    def _defines(self, start: int) -> bool:
-        return self._scopes.is_definition(self.explicit.place(start))
