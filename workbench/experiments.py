@@ -83,7 +83,8 @@ class RunningExperiment:
         self.progress = ExperimentProgress(done=done, total=0, failures=0)
         self.ended = False
         """Whether the command has reported its end."""
-        self.task: asyncio.Task[None] | None = None
+        self.task: asyncio.Task[None]
+        """Follows the command until it has ended."""
         self._begun: int | None = None
         """The number of trials that had finished before; None before the command has reported it."""
         self._seen: deque[tuple[float, int]] = deque()
@@ -409,16 +410,14 @@ class Experiments:
             raise ExperimentRunError("this experiment is not running")
         if not run.command.interrupted:
             run.command.interrupt()
-            asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)
+            asyncio.get_running_loop().call_later(STOP_TIME, run.task.cancel)
 
     async def close(self) -> None:
         """Ends all experiments normally; kills those that take too long."""
         self._closed = True
-        tasks: list[asyncio.Task[None]] = []
+        tasks = [run.task for run in self._running.values()]
         for run in self._running.values():
             run.command.interrupt()
-            if run.task is not None:
-                tasks.append(run.task)
         if tasks:
             _, late = await asyncio.wait(tasks, timeout=END_TIME)
             for task in late:
@@ -543,8 +542,3 @@ class Experiments:
 
 
 _NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None, "columns": []}
-
-
-def _end_late(run: RunningExperiment) -> None:
-    if run.task is not None:
-        run.task.cancel()
