@@ -45,8 +45,8 @@ class SceneFraming:
         self.corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
         """The corners of the bounding boxes of all objects on the stage `(n, 3)` [m]."""
         self.low, self.high = self.corners.min(axis=0), self.corners.max(axis=0)
-        self.ground = _ground(model)
-        """The height of the ground [m]."""
+        self.ground = max(grounds_of(model), default=0.0)
+        """The height of the highest plane of the world [m]; 0 if there is none."""
         own = [(low, high) for body, low, high in seen if self._of_body(model, body)]
         self.own = [get_body_name(model, body) for body in range(1, model.nbody) if self._of_body(model, body)]
         """The names of the body and its parts in viser's tree."""
@@ -96,10 +96,9 @@ class SceneFraming:
         return self.body == 0 or bool(model.body_rootid[body] == model.body_rootid[self.body])
 
 
-def _ground(model: MjModel) -> float:
-    """Returns the height of the highest plane of the world [m]; 0 if there is none."""
-    heights = model.geom_pos[(model.geom_type == mjtGeom.mjGEOM_PLANE) & (model.geom_bodyid == 0), 2]
-    return float(heights.max()) if heights.size else 0.0
+def grounds_of(model: MjModel) -> list[float]:
+    """Returns the heights of the planes of the world [m]."""
+    return sorted(set(model.geom_pos[(model.geom_type == mjtGeom.mjGEOM_PLANE) & (model.geom_bodyid == 0), 2].tolist()))
 
 
 def _boxes(model: MjModel, data: MjData) -> list[tuple[int, Any, Any]]:

@@ -112,14 +112,6 @@ def _height_field(model: MjModel, field: int) -> tuple[Any, Any]:
     return places, np.concatenate((np.column_stack((corner, right, across)), np.column_stack((corner, across, above))))
 
 
-def grounds_of(model: MjModel) -> list[float]:
-    """Returns the heights of the planes of a scene [m]."""
-    plane = int(mjtGeom.mjGEOM_PLANE)
-    return sorted(
-        {float(model.geom_pos[geom, 2]) for geom in np.flatnonzero(model.geom_type == plane).tolist() if not model.geom_bodyid[geom]}
-    )
-
-
 def poses_of(model: MjModel, bodies: list[int], states: Iterable[bytes]) -> Any:
     """Returns the poses of bodies in some states: positions [m] and quaternions, `(states, bodies, 7)`."""
     data = MjData(model)
