@@ -92,10 +92,13 @@ class Labels:
 
         Raises:
             LabelError: If a field that changes no longer has the value in `known`.
-            OSError: If the file cannot be written.
+            OSError: If the file cannot be written, or a damaged one not be kept.
         """
         with self._lock, locked(self._file):
-            labels = self._to_change()
+            labels, wrong = self._read()
+            if wrong is not None:  # such a file is kept aside
+                self._file.rename(self._file.with_name(ASIDE.format(f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}")))
+                logging.getLogger("workbench").warning(self.problem)
             now = labels.get(recording, Label())
             for field, new in changes.items():
                 there = getattr(now, field)
@@ -112,18 +115,6 @@ class Labels:
             gone = [labels.pop(recording) for recording in recordings if recording in labels]
             if gone:
                 self._write(labels)
-
-    def _to_change(self) -> dict[str, Label]:
-        """Returns the labels; a file that cannot be read is kept aside first.
-
-        Raises:
-            OSError: If it cannot be kept.
-        """
-        labels, wrong = self._read()
-        if wrong is not None:
-            self._file.rename(self._file.with_name(ASIDE.format(f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}")))
-            logging.getLogger("workbench").warning(self.problem)
-        return labels
 
     def _write(self, labels: dict[str, Label]) -> None:
         kept = {name: msgspec.structs.asdict(label) for name, label in sorted(labels.items()) if label}
