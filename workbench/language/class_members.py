@@ -117,7 +117,7 @@ class ClassMembers:
         """Returns the classes of what stands before a name, those of other texts as `module:name`; None if they are not known."""
         if name.before in (("self",), ("self", "__class__")) and name.agent:
             return {name.agent}
-        kinds = self._python.kinds(self._explicit, self._path, name.start - 1)
+        kinds = self._python.kinds(self._explicit, self._path, self._explicit.place(name.start - 1))
         return None if kinds and "typing:Self" in kinds else kinds
 
     def _own(self, agent: str, member: str) -> Iterator[int]:

@@ -170,12 +170,9 @@ class PythonAnswers:
         found = script.goto(line, 0, follow_imports=True)
         return next((one.module_name for one in found if one.module_path != self._folder / path), "")
 
-    def kinds(self, explicit: ExplicitText, path: str, at: int) -> set[str] | None:
-        """Returns the classes of the expression that ends at a position, those of others as `module:name`; None if they are not known."""
-        return self.kinds_at(explicit, path, explicit.place(at))
-
-    def kinds_at(self, explicit: ExplicitText, path: str, place: tuple[int, int]) -> set[str] | None:
-        """Returns the classes of the expression that ends at a line and column of the explicit text, as `kinds` does."""
+    def kinds(self, explicit: ExplicitText, path: str, place: tuple[int, int]) -> set[str] | None:
+        """Returns the classes of the expression that ends at a line and column of the explicit text, those of others as `module:name`;
+        None if they are not known."""
         return self._kinds(self._script(explicit.text, path).infer(*place), path)
 
     def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:

@@ -162,7 +162,7 @@ class References:
             return function is not None and bool(called if function in ("", "__init__") else called & {"", function})
         own = [str(kind) for kind in target.meaning.owners if kind in self.model.agents]
         family = {one for kind in own for one in self.members.family(kind, word)}
-        asked = (self._python.kinds_at(self.explicit, self._path, place) for place in self._scopes.asked_by_name)
+        asked = (self._python.kinds(self.explicit, self._path, place) for place in self._scopes.asked_by_name)
         return any(kinds is None or kinds & {*family, *(self.members.above_all(family) or kinds)} for kinds in asked)
 
     def _written(self, at: int) -> str:
