@@ -267,18 +267,15 @@ class ProgramRun(ControlledRun):
 
     def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
-        parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world, initial_widths = self._scene_now()
-        period = seconds(self.period)
-        changes = change_menu(agents_only=self._shown is None)
         facts = Facts(
             kind="program",
             seed=self._seed,
-            period=period,
-            parameters=parameters,
+            period=seconds(self.period),
+            parameters=to_json({**known, **self._controller.channel.start.settings}).encode(),
             world=world,
             initial_widths=initial_widths,
-            changes=changes,
+            changes=change_menu(agents_only=self._shown is None),
             mj_model=mj_model,
         )
         self._controller.channel.post(facts)
