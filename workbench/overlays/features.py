@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from actr3d.world.body import Body
 
 MAX_LABELS = 24
-"""Maximum number of labels."""
 MAX_DRAWN = 24
 """Maximum number of features of one search that are drawn."""
 DIAMOND = 0.08
@@ -42,6 +41,7 @@ class Features(Overlay):
         server = canvas.server
         self._chosen = Lines(server, "/overlays/features/chosen", (217, 138, 31), 4.0)
         self._noticed = Lines(server, "/overlays/features/noticed", (150, 120, 60), 2.0)
+        self.drawn = (self._chosen, self._noticed)
         self.switch()
 
     @staticmethod
@@ -65,11 +65,6 @@ class Features(Overlay):
             for one in first
         ]
         self.labels = [label for label in labels if np.isfinite(label["place"]).all()]
-
-    def switch(self) -> None:
-        """Shows or hides the features."""
-        self._chosen.show(self.visible)
-        self._noticed.show(self.visible)
 
 
 def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
