@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import logging
-import secrets
-import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -16,9 +14,10 @@ import msgspec
 
 from actr3d.errors import Actr3dError
 from actr3d.replacing import locked, replace_file
+from workbench.file_names import unique_suffix
 
 FILE = "labels.json"
-ASIDE = "labels-damaged-{}.json"
+ASIDE = "labels-damaged{}.json"
 """The name under which a damaged file is kept."""
 
 
@@ -74,7 +73,7 @@ class Labels:
         wrong = self._read()[1]
         if wrong is not None:
             return f"The names, notes and tags of recordings cannot be read from {FILE} ({wrong}). Nothing is deleted automatically."
-        aside = sorted(path.name for path in self._file.parent.glob(ASIDE.format("*")))
+        aside = sorted(path.name for path in self._file.parent.glob(ASIDE.format("-*")))
         if aside:
             return (
                 f"The names, notes and tags of recordings are new: the earlier file was damaged, and is kept as {', '.join(aside)} in "
@@ -97,7 +96,7 @@ class Labels:
         with self._lock, locked(self._file):
             labels, wrong = self._read()
             if wrong is not None:  # such a file is kept aside
-                self._file.rename(self._file.with_name(ASIDE.format(f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}")))
+                self._file.rename(self._file.with_name(ASIDE.format(unique_suffix())))
                 logging.getLogger("workbench").warning(self.problem)
             now = labels.get(recording, Label())
             for field, new in changes.items():
