@@ -101,11 +101,7 @@ class ExperimentRunError(Actr3dError):
 
 
 class ExperimentCommand:
-    """Holds a process that runs `actr3d`, and reads its output.
-
-    Args:
-        process: The process, the leader of a process group.
-    """
+    """Holds a process that runs `actr3d`, the leader of its process group, and reads its output."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
@@ -116,11 +112,7 @@ class ExperimentCommand:
 
     @classmethod
     async def start(cls, arguments: Sequence[str], folder: Path) -> ExperimentCommand:
-        """Starts the command.
-
-        Args:
-            arguments: Those of `actr3d`.
-            folder: The working folder.
+        """Starts `actr3d` with these arguments in a working folder.
 
         Raises:
             OSError: If no process can be started.

@@ -429,14 +429,9 @@ class Experiments:
     async def record(self, name: str, number: int, *, trust: bool) -> str:
         """Runs a trial again and records it; returns the name of the recording.
 
-        Args:
-            name: The experiment.
-            number: The number of the trial.
-            trust: Whether its code may be run although this installation did not make it.
-
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            PermissionNeededError: If its code may not be run.
+            PermissionNeededError: If this installation did not make it, and `trust` is false.
             ExperimentRunError: If the trial cannot be recorded.
             OSError: If no process can be started.
         """
@@ -457,13 +452,9 @@ class Experiments:
     async def make_report(self, name: str, *, trust: bool) -> None:
         """Makes the report of an experiment.
 
-        Args:
-            name: The experiment.
-            trust: Whether its code may be run although this installation did not make it.
-
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            PermissionNeededError: If its code may not be run.
+            PermissionNeededError: If this installation did not make it, and `trust` is false.
             ExperimentRunError: If it fails.
             OSError: If no process can be started.
         """
