@@ -103,15 +103,6 @@ class Names:
         if near or what not in self.growing:
             raise Actr3dError(f"no {what} '{name}'{near or there_are(short if len(short) == len(known) else known)}")
 
-    def check_new(self, productions: Iterable[str], before: Iterable[str]) -> None:
-        """Checks that productions of these names exist, except those that were named before.
-
-        Raises:
-            Actr3dError: If one does not exist.
-        """
-        for name in sorted(set(productions).difference(before)):
-            self.check("production", name)
-
 
 def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notice]:
     """Yields a warning for each breakpoint whose production no longer exists, for example after an edit."""
