@@ -101,7 +101,7 @@ def companions(path: Path) -> list[Path]:
 
 
 def size_of(path: Path) -> int:
-    """Returns the size of a recording with its companion files (as during writing) [bytes]; 0 if it no longer exists."""
+    """Returns the size of a recording or another file with its companion files (as during writing) [bytes]; 0 if there is none."""
     size = 0
     for each in (path, *companions(path)):
         with suppress(OSError):
