@@ -95,14 +95,11 @@ class PythonAnswers:
     def _script(self, text: str, path: str) -> jedi.Script:
         if (text, path) not in self._scripts:
             self._scripts.clear()  # jedi changes what it has read of a file when it reads another text of it
-            self._scripts[text, path] = self._new_script(text, path)
+            where = self._folder / path
+            sources = list(dict.fromkeys([str(where.parent), str(self._folder), *sys.path]))
+            project = jedi.Project(self._folder, sys_path=sources, smart_sys_path=False)
+            self._scripts[text, path] = jedi.Script(text, path=where, project=project, environment=self._environment)
         return self._scripts[text, path]
-
-    def _new_script(self, text: str, path: str) -> jedi.Script:
-        where = self._folder / path
-        sources = list(dict.fromkeys([str(where.parent), str(self._folder), *sys.path]))
-        project = jedi.Project(self._folder, sys_path=sources, smart_sys_path=False)
-        return jedi.Script(text, path=where, project=project, environment=self._environment)
 
     def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
         """Returns what can be written at a position; nothing in a string or a comment. Private names are left out until one begins."""
