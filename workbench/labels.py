@@ -22,12 +22,7 @@ ASIDE = "labels-damaged{}.json"
 
 
 class LabelError(Actr3dError):
-    """A field of a label was changed by somebody else in the meantime.
-
-    Args:
-        field: The field.
-        there: Its present value.
-    """
+    """A field of a label was changed by somebody else in the meantime, to what is `there` now."""
 
     def __init__(self, field: str, there: str | tuple[str, ...]) -> None:
         value = there if isinstance(there, str) else ", ".join(there)

@@ -131,11 +131,7 @@ class Sessions:
             return RecordedStart.from_json(made.read())
 
     async def trusted(self, recording: str, trust: bool) -> RecordedStart:
-        """Returns what a recorded run began with, if its code may be run.
-
-        Args:
-            recording: The name of the recording.
-            trust: Whether the user permits running code that this installation has not recorded itself.
+        """Returns what a recorded run began with, if its code may be run; with `trust`, also code that this installation has not recorded.
 
         Raises:
             PermissionNeededError: If the code may not be run.

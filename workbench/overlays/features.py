@@ -98,11 +98,8 @@ def _outline(sighting: Sighting, points: Places) -> Places:
     """Returns the lines that show a feature, `(n, 2, 3)`; the first is the measured one.
 
     An opening has a line across it and its two sides. If its edges are not found, it is drawn perpendicular to the line of sight. An
-    obstacle has an upright line at its nearest point. For the features of a model's own detectors, see `_frame`.
-
-    Args:
-        sighting: The feature as it was seen.
-        points: The points of its view, from `points_of`.
+    obstacle has an upright line at its nearest point. For the features of a model's own detectors, see `_frame`. `points` are those of the
+    view, from `points_of`.
     """
     from actr3d.vision import Obstacle, Opening
 

@@ -49,11 +49,7 @@ class SimulationDisplay:
         self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
     def world(self, parameters: Iterable[Parameter] = ()) -> dict[str, Any]:
-        """Returns the description of the world for pages, as plain values.
-
-        Args:
-            parameters: The model's parameters, which limit the widths of doorways during the run.
-        """
+        """Returns the description of the world for pages, as plain values; the model's parameters limit the widths of doorways."""
         return {
             **self.surroundings,
             "empty": self.simulation.world.mj_model.ngeom == 0,
