@@ -11,6 +11,7 @@ import sys
 import traceback
 import warnings
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -46,7 +47,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     errors = controller.errors = sys.stderr = sys.__stderr__ = _errors(channel, controller)  # type: ignore[misc]
     os.register_at_fork(after_in_child=errors.lines.forget)
     warnings.simplefilter("default")
-    warnings.showwarning = _warning_sender(channel)
+    warnings.showwarning = partial(_send_warning, channel)
     try:
         with before_the_end(controller.send_all):
             _run(channel, controller)
@@ -184,10 +185,6 @@ class _PastPrint(io.RawIOBase):
 _PAST_PRINT = _PastPrint()
 
 
-def _warning_sender(channel: Channel) -> Any:
-    """Returns a replacement for `warnings.showwarning` that sends warnings to the server."""
-
-    def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:
-        channel.post(notice("warning", str(message), filename, lineno))
-
-    return show
+def _send_warning(channel: Channel, message: Warning | str, _: type[Warning], filename: str, lineno: int, *__: Any) -> None:
+    """Sends a warning to the server, in place of `warnings.showwarning`."""
+    channel.post(notice("warning", str(message), filename, lineno))

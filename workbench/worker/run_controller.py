@@ -96,7 +96,7 @@ class RunController:
     def set_run(self, run: ControlledRun) -> None:
         """Sets the run to control; its names are known by now."""
         self.run = run
-        self.channel.events = self._count
+        self.channel.events = lambda: len(run.trace)
         if self.watch.breakpoints:  # without breakpoints, no names need to be collected
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.channel.post(lost)
@@ -124,10 +124,6 @@ class RunController:
         """Sets real time for a run with a body, unless a user has chosen a speed."""
         if self.channel.start.real_time:
             self.pacer.set(1.0)
-
-    def _count(self) -> int:
-        """Returns the number of events."""
-        return len(self.run.trace)
 
     # -- calls from the run
 
