@@ -169,7 +169,7 @@ class ProgramRun(ControlledRun):
         """The simulation that was shown last."""
         self._ahead: dict[int, StateHistory] = {}
         """The recorded states of simulations that have not begun yet in this repetition of a recording, by their number among all runs."""
-        self._commands = [RecordedCommand(*command) for command in start.commands]
+        self._commands: list[RecordedCommand] = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._recorded_simulations: set[str] = set()
         """The names of the facts of simulations that are recorded."""
