@@ -91,6 +91,19 @@ def compile_cached(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
     return made
 
 
+def compiled_on_demand(*sources: Path):
+    """Makes of a function one without arguments, which returns it compiled: `compile_cached` is called for it and `sources` just once."""
+
+    def decorate(function: Callable[P, R]):
+        @cache
+        def compiled() -> Callable[P, R]:
+            return compile_cached(function, *sources)
+
+        return compiled
+
+    return decorate
+
+
 def sources_digest(*sources: Path) -> int:
     """Returns a digest of this file, and of other files and folders of files."""
     digest = sha256()

@@ -243,9 +243,7 @@ def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str
     if isinstance(annotation, ast.BinOp) and isinstance(annotation.op, ast.BitOr):
         sides = [side for side in (annotation.left, annotation.right) if ast.unparse(side) != "None"]
         inner = _declared(parameter, (sides or [annotation.left])[0], constants)
-        return (
-            replace(inner, optional=inner.optional or len(sides) == 1) if len(sides) == 1 else replace(inner, takes=ast.unparse(annotation))
-        )
+        return replace(inner, optional=True) if len(sides) == 1 else replace(inner, takes=ast.unparse(annotation))
     if isinstance(annotation, ast.Subscript):
         name = ast.unparse(annotation.value).rpartition(".")[2]
         inside = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]

@@ -74,17 +74,15 @@ class Gate:
     port: int
     hosts: frozenset[str] = LOOPBACK
     """Host names by which the server may be called; any other name suggests DNS rebinding."""
-    scheme: str = "http"
     tickets: set[str] = field(default_factory=set[str], repr=False)
     """Secrets each of which admits one browser, once. What a notebook stores of an address is worthless after its first use."""
     embedders: set[str] = field(default_factory=set[str])
     """The origins of other pages that may show this server in a frame."""
-    cookie: str = field(init=False)
-    """The name of the cookie: one for each port, as cookies do not distinguish ports."""
 
-    def __post_init__(self) -> None:
-        """Sets the name of the cookie."""
-        object.__setattr__(self, "cookie", f"workbench_{self.port}")
+    @property
+    def cookie(self) -> str:
+        """The name of the cookie: one for each port, as cookies do not distinguish ports."""
+        return f"workbench_{self.port}"
 
     def knows_host(self, host: str) -> bool:
         """Returns whether a `Host` header names this server."""
@@ -108,16 +106,11 @@ class Gate:
 
     def is_own_origin(self, origin: str, host: str) -> bool:
         """Returns whether an `Origin` header is that of the workbench's own pages, which were loaded from this `Host`."""
-        return origin.lower() == f"{self.scheme}://{host.lower()}" and self.knows_host(host)
+        return origin.lower() == f"http://{host.lower()}" and self.knows_host(host)
 
 
 class Guard:
-    """Admits requests that have the token and come from the workbench's own page, refuses all others, and adds headers to all responses.
-
-    Args:
-        app: The application to protect.
-        gate: Grants or refuses access.
-    """
+    """Admits requests that have the token and come from the workbench's own page, refuses all others, and adds headers to all responses."""
 
     def __init__(self, app: ASGIApp, gate: Gate) -> None:
         self._app = app

@@ -78,12 +78,7 @@ def lay_grounds(server: Any, model: MjModel) -> list[str]:
 
 
 class Outlines:
-    """Draws the edges of large immovable boxes such as walls, so that they look like parts of a building.
-
-    Args:
-        server: Viser's server.
-        model: The compiled scene.
-    """
+    """Draws the edges of large immovable boxes such as walls, so that they look like parts of a building."""
 
     def __init__(self, server: Any, model: MjModel) -> None:
         standing = (model.geom_type == mjtGeom.mjGEOM_BOX) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)

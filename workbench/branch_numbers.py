@@ -38,12 +38,7 @@ class BranchNumbers:
         self._lock = Lock()
 
     def of(self, summaries: Iterable[Summary], labels: Mapping[str, Label]) -> dict[str, int]:
-        """Returns the numbers of recordings by name; those that have none yet are given one, the oldest first.
-
-        Args:
-            summaries: The recordings.
-            labels: The labels of recordings by name.
-        """
+        """Returns the numbers of recordings by name; those that have none yet are given one, the oldest first."""
         oldest_first = sorted(summaries, key=lambda one: one.made if one.kept is None else one.kept)
         called = {one.id: (_first_of_tree(one), name) for one in oldest_first if (name := _name(one, labels.get(one.id)))}
         numbers = self._read()

@@ -19,8 +19,7 @@ from actr3d.actr.kernel.tracing import chunk_text
 from actr3d.clock import seconds
 from actr3d.trace import run_of
 from workbench.curves import stride
-from workbench.event_curves import EventCurves, LoggedEvent
-from workbench.part_names import part_name
+from workbench.event_curves import EventCurves, LoggedEvent, part_name
 
 SUFFIX = " over time"
 """The end of the names of these curves: `memory: item:cup base level over time`. Other curves of activations have values at retrievals."""

@@ -118,13 +118,7 @@ def listen_for(folder: Path, host: str, port: int | None) -> socket.socket:
 
 
 def other_port_warning(folder: Path, host: str, port: int) -> str:
-    """Returns why a workbench does not have the usual port of its models folder, and what this means for its user.
-
-    Args:
-        folder: The models folder.
-        host: Where it listens.
-        port: The port that it has instead.
-    """
+    """Returns why a workbench has this port instead of the usual one of its models folder, and what this means for its user."""
     usual = port_of(folder)
     owner, advice = "another program", "End that program and start again"
     with suppress(OSError, http.client.HTTPException):

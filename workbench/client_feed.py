@@ -20,9 +20,6 @@ Raw = msgspec.Raw
 class Broadcast(ABC):
     """What is sent to all browsers that watch: events and notices with numbers, state and facts with versions. It is what `Feed` knows of
     a session, whose module imports this one.
-
-    Args:
-        name: The name of the session.
     """
 
     def __init__(self, name: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
@@ -39,115 +38,15 @@ class Curve:
     shape: Shape = "line"
 
 
-class Source(ABC):
-    """Computes the values of some curves from a state."""
+@dataclass(frozen=True)
+class Source:
+    """Some curves, and how their values follow from a state."""
 
     curves: tuple[Curve, ...]
-    needs_pose = False
+    read: Callable[[NDArray[np.float64], Contacts], Values]
+    """Returns the value of each curve in a state, given the contacts since the state before; None if there is no value."""
+    needs_pose: bool = False
     """Whether positions and velocities must be computed for a state first."""
-
-    @abstractmethod
-    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
-        """Returns the value of each of its curves in a state; None if there is no value.
-
-        Args:
-            numbers: The state.
-            contacts: The contacts since the state before.
-        """
-
-
-class Joints(Source):
-    """Reads positions and speeds of joints; those of hinges in degrees.
-
-    Args:
-        model: The compiled scene.
-    """
-
-    def __init__(self, model: MjModel) -> None:
-        curves: list[Curve] = []
-        columns: list[int] = []
-        factors: list[float] = []
-        for number in range(model.njnt):
-            joint: Any = model.joint(number)
-            kind = int(joint.type[0])
-            if not joint.name or kind not in (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE)):
-                continue
-            turns = kind == int(mujoco.mjtJoint.mjJNT_HINGE)
-            unit = "deg" if turns else "m"
-            curves += Curve(joint.name, unit, "joint"), Curve(f"{joint.name} speed", f"{unit}/s", "joint speed")
-            # The first number of a state is the time, then come all positions, then all speeds.
-            columns += 1 + int(joint.qposadr[0]), 1 + model.nq + int(joint.dofadr[0])
-            factors += [math.degrees(1) if turns else 1.0] * 2
-        self.curves = tuple(curves)
-        self._columns = np.array(columns, dtype=np.intp)
-        self._factors = np.array(factors)
-
-    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
-        """Returns all joint positions and speeds."""
-        return (numbers[self._columns] * self._factors).tolist()
-
-
-class Motion(Source):
-    """Computes the position of a body and its speed over the ground.
-
-    Args:
-        model: The compiled scene.
-        data: The state of the scene.
-        name: The body's name.
-        root: The number of its MuJoCo body.
-    """
-
-    needs_pose = True
-
-    def __init__(self, model: MjModel, data: MjData, name: str, root: int) -> None:
-        self.curves = (Curve(f"{name} x", "m", "place"), Curve(f"{name} y", "m", "place"), Curve(f"{name} speed", "m/s", "speed"))
-        self._model, self._data, self._root = model, data, root
-
-    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
-        """Returns x and y of the body's root [m] and the horizontal speed of that point [m/s]."""
-        return place_and_speed(self._model, self._data, self._root)
-
-
-class ClearanceCurves(Source):
-    """Computes a body's clearance in a doorway, as `PassageResult` measures it but without objects held in the hands.
-
-    Args:
-        model: The compiled scene.
-        data: The state of the scene.
-        name: The body's name.
-        geoms: The body's geoms.
-        wall: The wall with the doorway, as `surroundings` describes it.
-        where: The suffix of the curves' names if there are several doorways.
-    """
-
-    needs_pose = True
-
-    def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> None:
-        self.curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
-        from actr3d.experiment.aperture.clearance import Clearance  # also loads the world, which would slow the start
-        from actr3d.world.scene_objects import Gap
-
-        self._clearance = Clearance(model, data, geoms, Gap(**wall))
-
-    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
-        """Returns the smallest distances to the left and right wall segment [m]; None if no part of the body is in the doorway."""
-        return self._clearance.clearances() or (None, None)
-
-
-class Force(Source):
-    """Reads the greatest contact force on a body from anything but the ground, at the beginnings of physics steps like `PassageResult`.
-
-    Args:
-        name: The body's name.
-    """
-
-    def __init__(self, name: str) -> None:
-        self.curves = (Curve(f"{name} contact force", "N", "contact"),)
-        self._name = name
-
-    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
-        """Returns the greatest force [N] of one object on one part, summed over all contacts of the two."""
-        return (max((force for (body, _, _), force in contacts.items() if body == self._name), default=0.0),)
 
 
 class CurveReader:
@@ -160,7 +59,7 @@ class CurveReader:
 
     def __init__(self, model: MjModel, world: dict[str, Any]) -> None:
         self._model, self._data = model, MjData(model)
-        self._sources: list[Source] = [*_sources(model, self._data, world), Joints(model)]
+        self._sources = [*_sources(model, self._data, world), _joints(model)]
 
     @property
     def names(self) -> list[dict[str, str]]:
@@ -217,15 +116,74 @@ def joined(parts: Iterable[dict[str, Any]]) -> dict[str, Any]:
     return {"names": list(names.values()), "times": times, "curves": curves}
 
 
-def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[Source]:
+def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterator[Source]:
     """Yields the sources of the curves of bodies."""
     walls = world["walls"]
     for name, body in world["bodies"].items():
         geoms = np.flatnonzero(np.isin(model.geom_bodyid, _members(model, body["root"])))
-        yield Motion(model, data, name, body["root"])
+        yield _motion(model, data, name, body["root"])
         for at, wall in walls.items():
-            yield ClearanceCurves(model, data, name, geoms, wall, "" if len(walls) == 1 else f" of {at}")
-        yield Force(name)
+            yield _clearance(model, data, name, geoms, wall, "" if len(walls) == 1 else f" of {at}")
+        yield _force(name)
+
+
+def _motion(model: MjModel, data: MjData, name: str, root: int) -> Source:
+    """Returns the source of the place of a body's root [m], and of the horizontal speed of that point [m/s]."""
+    curves = (Curve(f"{name} x", "m", "place"), Curve(f"{name} y", "m", "place"), Curve(f"{name} speed", "m/s", "speed"))
+    return Source(curves, lambda _, __: place_and_speed(model, data, root), needs_pose=True)
+
+
+def _clearance(model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> Source:
+    """Returns the source of a body's clearance in a doorway, as `PassageResult` measures it but without objects held in the hands.
+
+    It is the smallest distance to the left and to the right wall segment [m]; None if no part of the body is in the doorway.
+
+    Args:
+        model: The compiled scene.
+        data: Its state.
+        name: The body's name.
+        geoms: The body's geoms.
+        wall: The wall with the doorway, as `surroundings` describes it.
+        where: The suffix of the curves' names if there are several doorways.
+    """
+    from actr3d.experiment.aperture.clearance import Clearance  # also loads the world, which would slow the start
+    from actr3d.world.scene_objects import Gap
+
+    clearance = Clearance(model, data, geoms, Gap(**wall))
+    curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
+    return Source(curves, lambda _, __: clearance.clearances() or (None, None), needs_pose=True)
+
+
+def _force(name: str) -> Source:
+    """Returns the source of the greatest force [N] of one object on one part of a body, summed over all contacts of the two.
+
+    The ground does not count. The force is that at the beginnings of physics steps, as in `PassageResult`.
+    """
+
+    def read(_: NDArray[np.float64], contacts: Contacts) -> Values:
+        return (max((force for (body, _, _), force in contacts.items() if body == name), default=0.0),)
+
+    return Source((Curve(f"{name} contact force", "N", "contact"),), read)
+
+
+def _joints(model: MjModel) -> Source:
+    """Returns the source of the positions and speeds of joints; those of hinges in degrees."""
+    curves: list[Curve] = []
+    columns: list[int] = []
+    factors: list[float] = []
+    for number in range(model.njnt):
+        joint: Any = model.joint(number)
+        kind = int(joint.type[0])
+        if not joint.name or kind not in (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE)):
+            continue
+        turns = kind == int(mujoco.mjtJoint.mjJNT_HINGE)
+        unit = "deg" if turns else "m"
+        curves += Curve(joint.name, unit, "joint"), Curve(f"{joint.name} speed", f"{unit}/s", "joint speed")
+        # The first number of a state is the time, then come all positions, then all speeds.
+        columns += 1 + int(joint.qposadr[0]), 1 + model.nq + int(joint.dofadr[0])
+        factors += [math.degrees(1) if turns else 1.0] * 2
+    places, scales = np.array(columns, dtype=np.intp), np.array(factors)
+    return Source(tuple(curves), lambda numbers, _: (numbers[places] * scales).tolist())
 
 
 def _members(model: MjModel, root: int) -> list[int]:

@@ -20,10 +20,6 @@ class DisconnectedError(Actr3dError):
 async def while_connected(work: Coroutine[Any, Any, T], receive: Receive) -> T:
     """Returns the result of some work, which is cancelled when the client of a request disconnects.
 
-    Args:
-        work: The work.
-        receive: Receives messages of the request.
-
     Raises:
         DisconnectedError: If the client has disconnected.
     """

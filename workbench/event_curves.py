@@ -4,6 +4,7 @@ how long modules were busy and buffers full."""
 from __future__ import annotations
 
 import math
+import re
 from array import array
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
@@ -16,10 +17,10 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from actr3d.actr.chunks.chunk import as_number
+from actr3d.actr.declarative.activation_parts import ACTIVATION_PARTS
 from actr3d.clock import microseconds, seconds
 from actr3d.trace import TraceEvent, run_of
 from workbench.curves import Curve, Shape
-from workbench.part_names import part_name
 from workbench.program_time import RunTimes
 from workbench.time_text import time_text
 
@@ -30,11 +31,7 @@ MAX_CURVES = 5_000
 
 
 class _EventCurve:
-    """The values of one curve, each with its time.
-
-    Args:
-        about: What it is.
-    """
+    """The values of one curve, each with its time."""
 
     __slots__ = ("about", "slope", "times", "total", "value", "values")
 
@@ -255,6 +252,12 @@ class EventCurves:
         {"buffer": _buffer, "state": _state, "conflict": _conflict, "utility": _utility, "request": _request}
     )
     """By the kind of the event: the method that takes its numbers."""
+
+
+def part_name(part: str) -> str:
+    """Returns the name that users see for a component of an activation; of several modules of one class, each has a number."""
+    name = re.sub(r" \d+\Z", "", part)
+    return ACTIVATION_PARTS.get(name, name) + part.removeprefix(name)
 
 
 def _path(system: str, production: str) -> str:

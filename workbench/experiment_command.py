@@ -101,25 +101,18 @@ class ExperimentRunError(Actr3dError):
 
 
 class ExperimentCommand:
-    """Holds a process that runs `actr3d`, and reads its output.
-
-    Args:
-        process: The process, the leader of a process group.
-    """
+    """Holds a process that runs `actr3d`, the leader of its process group, and reads its output."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
         self._messages: deque[str] = deque(maxlen=LAST_LINES)
         self._reading = asyncio.create_task(self._read_messages())
-        self._interrupted = False
+        self.interrupted = False
+        """Whether it was asked to end."""
 
     @classmethod
     async def start(cls, arguments: Sequence[str], folder: Path) -> ExperimentCommand:
-        """Starts the command.
-
-        Args:
-            arguments: Those of `actr3d`.
-            folder: The working folder.
+        """Starts `actr3d` with these arguments in a working folder.
 
         Raises:
             OSError: If no process can be started.
@@ -142,15 +135,10 @@ class ExperimentCommand:
         return cls(process)
 
     @property
-    def interrupted(self) -> bool:
-        """Whether it was asked to end."""
-        return self._interrupted
-
-    @property
     def problem(self) -> str:
         """Why it failed: the signal that ended it, or its last messages, which begin with the name of a wrong value if there is one."""
         code = self._process.returncode
-        if code is not None and code < 0 and not self._interrupted:
+        if code is not None and code < 0 and not self.interrupted:
             return f"its process {how_it_ended(code)}"
         text = OF_VALUE.sub(r"\1: ", "\n".join(self._messages).strip().removeprefix("error: "))
         return text if len(text) <= PART else f"… {text[-PART:]}"
@@ -180,8 +168,8 @@ class ExperimentCommand:
 
     def interrupt(self) -> None:
         """Asks it to end normally, as Ctrl-C does; only once, because a second time would abort it."""
-        if not self._interrupted and self._process.returncode is None:
-            self._interrupted = True
+        if not self.interrupted and self._process.returncode is None:
+            self.interrupted = True
             with suppress(ProcessLookupError):
                 self._process.send_signal(signal.SIGINT)
 

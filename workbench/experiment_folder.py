@@ -42,11 +42,7 @@ class Notes(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ExperimentFolder:
-    """The folder of an experiment.
-
-    Args:
-        path: The folder.
-    """
+    """The folder of an experiment."""
 
     def __init__(self, path: Path) -> None:
         self.path = path

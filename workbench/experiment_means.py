@@ -122,12 +122,7 @@ def _compared(mine: _Trials, theirs: _Trials) -> dict[str, Any]:
 
 
 class _Trials:
-    """The trials of an experiment by place and condition.
-
-    Args:
-        table: Their table.
-        figure: What the figure shows.
-        defaults: See `means`.
+    """The trials of an experiment by place and condition; the defaults are those of `means` for its table.
 
     Raises:
         TableError: If there is no such column, or the measure has no numbers.

@@ -33,11 +33,7 @@ class TableError(Actr3dError):
 
 
 def counts(*paths: Path) -> list[dict[str, Any]]:
-    """Returns the numbers of finished and of failed trials of experiments, and their columns; `problem` says why a table cannot be read.
-
-    Args:
-        paths: The tables.
-    """
+    """Returns the numbers of finished and of failed trials of experiments, and their columns; `problem` says why a table cannot be read."""
     found: list[dict[str, Any]] = []
     for path in paths:
         try:
@@ -75,9 +71,6 @@ def _opened(path: Path) -> sqlite3.Connection:
 class Table:
     """The table of trials of an experiment.
 
-    Args:
-        path: The SQLite file.
-
     Raises:
         Actr3dError: If it cannot be read.
     """
@@ -92,19 +85,14 @@ class Table:
             raise TableError(f"the table of trials cannot be read: {error}") from None
         texts = [tuple("" if value is None else str(value) for value in row) for row in listed]
         self.columns = [{"name": n, "type": t, "unit": u or None, "meaning": m, "role": "value"} for n, t, u, m in texts if '"' not in n]
-        self._give_roles()
-        self._types = {str(column["name"]): str(column["type"]) for column in self.columns}
-
-    def _give_roles(self) -> None:
-        """Distinguishes measures from the values of a trial."""
         names = [column["name"] for column in self.columns]
         seed = names.index("seed") if "seed" in names else -1
-        for place, column in enumerate(self.columns):
-            name = column["name"]
-            column["role"] = "own" if name in (*FIRST, *LAST, "seed") else "measure" if place > seed else "value"
+        for place, name in enumerate(names):
+            self.columns[place]["role"] = "own" if name in (*FIRST, *LAST, "seed") else "measure" if place > seed else "value"
         self.columns += [
             {"name": n, "type": t, "unit": "s" if n == "wall_s" else None, "meaning": "", "role": "own"} for n, t in OUTSIDE.items()
         ]
+        self._types = {str(column["name"]): str(column["type"]) for column in self.columns}
 
     def close(self) -> None:
         """Closes the file."""

@@ -83,7 +83,8 @@ class RunningExperiment:
         self.progress = ExperimentProgress(done=done, total=0, failures=0)
         self.ended = False
         """Whether the command has reported its end."""
-        self.task: asyncio.Task[None] | None = None
+        self.task: asyncio.Task[None]
+        """Follows the command until it has ended."""
         self._begun: int | None = None
         """The number of trials that had finished before; None before the command has reported it."""
         self._seen: deque[tuple[float, int]] = deque()
@@ -409,16 +410,14 @@ class Experiments:
             raise ExperimentRunError("this experiment is not running")
         if not run.command.interrupted:
             run.command.interrupt()
-            asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)
+            asyncio.get_running_loop().call_later(STOP_TIME, run.task.cancel)
 
     async def close(self) -> None:
         """Ends all experiments normally; kills those that take too long."""
         self._closed = True
-        tasks: list[asyncio.Task[None]] = []
+        tasks = [run.task for run in self._running.values()]
         for run in self._running.values():
             run.command.interrupt()
-            if run.task is not None:
-                tasks.append(run.task)
         if tasks:
             _, late = await asyncio.wait(tasks, timeout=END_TIME)
             for task in late:
@@ -430,14 +429,9 @@ class Experiments:
     async def record(self, name: str, number: int, *, trust: bool) -> str:
         """Runs a trial again and records it; returns the name of the recording.
 
-        Args:
-            name: The experiment.
-            number: The number of the trial.
-            trust: Whether its code may be run although this installation did not make it.
-
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            PermissionNeededError: If its code may not be run.
+            PermissionNeededError: If this installation did not make it, and `trust` is false.
             ExperimentRunError: If the trial cannot be recorded.
             OSError: If no process can be started.
         """
@@ -458,13 +452,9 @@ class Experiments:
     async def make_report(self, name: str, *, trust: bool) -> None:
         """Makes the report of an experiment.
 
-        Args:
-            name: The experiment.
-            trust: Whether its code may be run although this installation did not make it.
-
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            PermissionNeededError: If its code may not be run.
+            PermissionNeededError: If this installation did not make it, and `trust` is false.
             ExperimentRunError: If it fails.
             OSError: If no process can be started.
         """
@@ -533,10 +523,7 @@ class Experiments:
         folder = self.folder(name)
         if not folder.made_here:
             if not trust:
-                raise PermissionNeededError(
-                    "this installation did not make the experiment (or it was changed since), and the code in it would be run: "
-                    'send "trust": true if you know where it comes from'
-                )
+                raise PermissionNeededError("experiment")
             folder.seal()
         return folder
 
@@ -546,8 +533,3 @@ class Experiments:
 
 
 _NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None, "columns": []}
-
-
-def _end_late(run: RunningExperiment) -> None:
-    if run.task is not None:
-        run.task.cancel()

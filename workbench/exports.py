@@ -46,14 +46,9 @@ def copy(path: Path, to: Path) -> None:
 
 
 def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: int, last: float | None = None) -> dict[str, Any]:
-    """Returns the curves of a recorded run over time, even if the run is still going on; see `workbench.page_commands.bodies.Curves`.
+    """Returns the curves of a recorded run over time, even if the run is still going on.
 
-    Args:
-        path: The recording.
-        names: Which curves; None for all.
-        first: The start of the interval [s].
-        most: Maximum number of times, evenly spaced, and of values of a curve of events; see `Curves.most`.
-        last: The end of the interval [s]; None for the end of the recording.
+    What they are, and the options, are those of `workbench.page_commands.bodies.Curves`; without `last`, up to the end of the recording.
 
     Raises:
         RecordingError: If the recording cannot be read.

@@ -55,11 +55,7 @@ class ModelFile:
 
 
 class ModelFolder:
-    """Reads and writes the model files of a folder.
-
-    Args:
-        root: The folder.
-    """
+    """Reads and writes the model files of a folder."""
 
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()

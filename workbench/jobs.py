@@ -42,9 +42,6 @@ class Job(Receiver):
     async def stages(self, stage: Callable[[], float]) -> AsyncGenerator[float]:
         """Yields the progress of the worker repeatedly until the job is over.
 
-        Args:
-            stage: Returns the progress.
-
         Raises:
             StuckError: If there is no progress for `PATIENCE`.
         """

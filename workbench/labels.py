@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import logging
-import secrets
-import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -16,19 +14,15 @@ import msgspec
 
 from actr3d.errors import Actr3dError
 from actr3d.replacing import locked, replace_file
+from workbench.file_names import unique_suffix
 
 FILE = "labels.json"
-ASIDE = "labels-damaged-{}.json"
+ASIDE = "labels-damaged{}.json"
 """The name under which a damaged file is kept."""
 
 
 class LabelError(Actr3dError):
-    """A field of a label was changed by somebody else in the meantime.
-
-    Args:
-        field: The field.
-        there: Its present value.
-    """
+    """A field of a label was changed by somebody else in the meantime, to what is `there` now."""
 
     def __init__(self, field: str, there: str | tuple[str, ...]) -> None:
         value = there if isinstance(there, str) else ", ".join(there)
@@ -47,11 +41,7 @@ class Label(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Labels:
-    """Reads and writes the labels of the recordings in a folder.
-
-    Args:
-        folder: The folder of the recordings.
-    """
+    """Reads and writes the labels of the recordings in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / FILE
@@ -78,7 +68,7 @@ class Labels:
         wrong = self._read()[1]
         if wrong is not None:
             return f"The names, notes and tags of recordings cannot be read from {FILE} ({wrong}). Nothing is deleted automatically."
-        aside = sorted(path.name for path in self._file.parent.glob(ASIDE.format("*")))
+        aside = sorted(path.name for path in self._file.parent.glob(ASIDE.format("-*")))
         if aside:
             return (
                 f"The names, notes and tags of recordings are new: the earlier file was damaged, and is kept as {', '.join(aside)} in "
@@ -96,10 +86,13 @@ class Labels:
 
         Raises:
             LabelError: If a field that changes no longer has the value in `known`.
-            OSError: If the file cannot be written.
+            OSError: If the file cannot be written, or a damaged one not be kept.
         """
         with self._lock, locked(self._file):
-            labels = self._to_change()
+            labels, wrong = self._read()
+            if wrong is not None:  # such a file is kept aside
+                self._file.rename(self._file.with_name(ASIDE.format(unique_suffix())))
+                logging.getLogger("workbench").warning(self.problem)
             now = labels.get(recording, Label())
             for field, new in changes.items():
                 there = getattr(now, field)
@@ -116,18 +109,6 @@ class Labels:
             gone = [labels.pop(recording) for recording in recordings if recording in labels]
             if gone:
                 self._write(labels)
-
-    def _to_change(self) -> dict[str, Label]:
-        """Returns the labels; a file that cannot be read is kept aside first.
-
-        Raises:
-            OSError: If it cannot be kept.
-        """
-        labels, wrong = self._read()
-        if wrong is not None:
-            self._file.rename(self._file.with_name(ASIDE.format(f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}")))
-            logging.getLogger("workbench").warning(self.problem)
-        return labels
 
     def _write(self, labels: dict[str, Label]) -> None:
         kept = {name: msgspec.structs.asdict(label) for name, label in sorted(labels.items()) if label}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Request
@@ -10,7 +9,7 @@ from fastapi.responses import Response
 from pydantic import Field
 
 from actr3d.values import to_json
-from workbench.language.answers import LanguageError, Unanswered
+from workbench.language.answers import LanguageError
 from workbench.language.language_server import LONGEST_TEXT, LanguageServer
 from workbench.page_commands import PageMessage
 from workbench.routes import FilePath, json_response
@@ -42,5 +41,5 @@ async def language(request: Request, body: AskAboutText) -> Response:
     try:
         answer = await server.ask(body.model_dump_json().encode())
     except LanguageError as error:
-        answer = to_json(asdict(Unanswered(unanswered=str(error), line=error.line))).encode()
+        answer = to_json({"unanswered": str(error), "line": error.line}).encode()
     return json_response(answer)

@@ -11,12 +11,7 @@ from actr3d.parameter_schema import Parameter
 
 
 def value_changed_by(parameters: Iterable[Parameter], data: Mapping[str, Any]) -> tuple[str, Any] | None:
-    """Returns the name of the parameter or aperture that a recorded command changes, and its new value; None if it changes none.
-
-    Args:
-        parameters: The parameters of the model.
-        data: The command, as in a recording.
-    """
+    """Returns the name of the parameter or aperture that a recorded command changes, and its new value; None if it changes none."""
     from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
 
     one = Command.from_data(0, data)

@@ -6,7 +6,7 @@ import ast
 import re
 import warnings
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -64,7 +64,7 @@ class ModelListing:
     later: tuple[str, ...] = ()
     """The other variables that a program sets at its top level: after other code, so that they are no parameters."""
     agents: tuple[WrittenAgent, ...] = ()
-    problems: tuple[Problem, ...] = field(default=())
+    problems: tuple[Problem, ...] = ()
 
     @property
     def productions(self) -> tuple[str, ...]:
@@ -145,8 +145,7 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
 
 def undefined_in(source: str) -> Iterator[Problem]:
     """Yields a warning for each name that nothing defines; apart from `problems_of`, as only who checks a text wants them."""
-    for line, message in undefined_names(syntax_tree(source)):
-        yield Problem(level="warning", message=escape_surrogates(message), line=line)
+    return map(_warning, undefined_names(syntax_tree(source)))
 
 
 def misplaced_in(source: str) -> Iterator[Problem]:
@@ -154,14 +153,17 @@ def misplaced_in(source: str) -> Iterator[Problem]:
     for kind in (node for node in syntax_tree(source).body if isinstance(node, ast.ClassDef)):
         parts = {part.name for part in _parts(kind)}
         for method in (node for node in kind.body if isinstance(node, ast.FunctionDef)):
-            for line, message in productions_inside(method, parts.__contains__):
-                yield Problem(level="warning", message=escape_surrogates(message), line=line)
+            yield from map(_warning, productions_inside(method, parts.__contains__))
 
 
 def misspelt_in(source: str) -> Iterator[Problem]:
     """Yields a warning for each misspelt word of the library: features and their slots in patterns, and commands to bodies."""
-    for line, message in misspelt_words(source):
-        yield Problem(level="warning", message=escape_surrogates(message), line=line)
+    return map(_warning, misspelt_words(source))
+
+
+def _warning(found: tuple[int, str]) -> Problem:
+    """Returns the warning that a check has found, given its line and its message."""
+    return Problem(level="warning", message=escape_surrogates(found[1]), line=found[0])
 
 
 def _of_first_lines(source: str) -> Iterator[Parameter]:

@@ -38,12 +38,7 @@ class _Modules:
         self._known: dict[tuple[str, ...], set[str]] = {}
 
     def imported(self, tree: ast.Module, package: tuple[str, ...]) -> set[str]:
-        """Returns what a text imports that makes a simulation, with `Simulation` itself.
-
-        Args:
-            tree: The text.
-            package: The package that it is in.
-        """
+        """Returns what a text imports that makes a simulation, with `Simulation` itself."""
         found = {CLASS}
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):

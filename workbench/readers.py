@@ -13,6 +13,7 @@ from weakref import WeakValueDictionary
 from actr3d.errors import Actr3dError
 from workbench.jobs import Job, StuckError, doing
 from workbench.recordings import NoSuchRecordingError
+from workbench.retention import size_of
 from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
@@ -29,11 +30,7 @@ class ReadingError(Actr3dError):
 
 
 class Readers:
-    """Reads recordings in workers, which write the results to files.
-
-    Args:
-        workers: The pool that starts workers.
-    """
+    """Reads recordings in workers, which write the results to files."""
 
     def __init__(self, workers: Workers) -> None:
         self._workers = workers
@@ -71,16 +68,9 @@ class Readers:
         job = Job()
         async with doing(self._workers, start, job, memory=READER_MEMORY):
             try:
-                async for _ in job.stages(lambda: _size(start.to)):
+                async for _ in job.stages(lambda: size_of(Path(start.to))):
                     pass
             except StuckError as error:
                 raise ReadingError(str(error)) from None
         if job.result is None:
             raise ReadingError(job.problem)
-
-
-def _size(path: str) -> int:
-    try:
-        return Path(path).stat().st_size
-    except OSError:
-        return 0

@@ -49,7 +49,11 @@ def simulations_of(recorded: Recorded) -> list[RecordedSimulation]:
         RecordingError: If the recording is damaged.
     """
     if recorded.facts["kind"] == "simulation":
-        return _alone(recorded)
+        facts = facts_of_simulation(recorded, 1)
+        alone = [] if facts is None else [RecordedSimulation(number=1, begin=0, facts=facts)]
+        for state in recorded.states() if alone else ():
+            alone[0].past.add_recorded(state)
+        return alone
     found: dict[int, RecordedSimulation] = {}
     for state, time in timed(recorded):
         if not isinstance(state, State):
@@ -71,14 +75,3 @@ def facts_of_simulation(recorded: Recorded, number: int) -> dict[str, Any] | Non
     """Returns what is recorded of a simulation: `compiled`, `world` and `period_us`; None if its scene is unknown."""
     facts = recorded.facts if recorded.facts["kind"] == "simulation" else recorded.facts.get(SIMULATION.format(number))
     return None if facts is None or "compiled" not in facts else facts
-
-
-def _alone(recorded: Recorded) -> list[RecordedSimulation]:
-    """Returns the simulation of a recording that was made of it alone; none if its scene is unknown."""
-    facts = facts_of_simulation(recorded, 1)
-    if facts is None:
-        return []
-    one = RecordedSimulation(number=1, begin=0, facts=facts)
-    for state in recorded.states():
-        one.past.add_recorded(state)
-    return [one]

@@ -87,10 +87,6 @@ class Summary:
 def summary_json(path: Path, models: ModelFolder) -> bytes:
     """Returns the `Summary` of a file as JSON; if the file is not a recording, the summary gives the reason.
 
-    Args:
-        path: The file.
-        models: The folder of the models.
-
     Raises:
         RecordingError: If the summary is too long.
     """

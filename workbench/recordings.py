@@ -33,11 +33,7 @@ class NoSuchRecordingError(Actr3dError):
 
 
 class Recordings:
-    """Finds and deletes the recordings of a models folder.
-
-    Args:
-        root: The models folder.
-    """
+    """Finds and deletes the recordings of a models folder."""
 
     def __init__(self, root: Path) -> None:
         self._root = root

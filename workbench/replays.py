@@ -23,11 +23,7 @@ class BusyError(Actr3dError):
 
 
 class Replays:
-    """The recordings that are being replayed.
-
-    Args:
-        workers: The pool that starts workers.
-    """
+    """The recordings that are being replayed."""
 
     def __init__(self, workers: Workers) -> None:
         self._workers = workers

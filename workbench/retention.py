@@ -40,13 +40,7 @@ class RetentionLimits:
 
 
 def recordings_over_limit(files: Sequence[Path], limits: RetentionLimits, labelled: Collection[str] = ()) -> list[Path]:
-    """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled, and no run is writing.
-
-    Args:
-        files: All recordings.
-        limits: The limits.
-        labelled: The names of those with a label.
-    """
+    """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled, and no run is writing."""
 
     def is_kept(path: Path) -> bool:
         return not is_unnamed(path) or path.stem in labelled or not is_complete(path)
@@ -101,7 +95,7 @@ def companions(path: Path) -> list[Path]:
 
 
 def size_of(path: Path) -> int:
-    """Returns the size of a recording with its companion files (as during writing) [bytes]; 0 if it no longer exists."""
+    """Returns the size of a recording or another file with its companion files (as during writing) [bytes]; 0 if there is none."""
     size = 0
     for each in (path, *companions(path)):
         with suppress(OSError):

@@ -113,9 +113,5 @@ class LaunchedRun:
         return path.resolve() in self._helpers
 
     def is_stale(self, digest: str | None) -> bool:
-        """Returns whether any of the files has changed.
-
-        Args:
-            digest: Of the text that the model's file has now.
-        """
+        """Returns whether any of the files has changed, given the digest of the text that the model's file has now."""
         return digest != self._digest or any(digest_of_file(each) != then for each, then in self._helpers.items())

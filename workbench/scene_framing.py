@@ -37,16 +37,17 @@ class SceneFraming:
         mujoco.mj_kinematics(model, data)
         base = self.base(data)
         around = np.array((MIN_EXTENT, MIN_EXTENT, 0.0))
+        seen = _boxes(model, data)
         boxes = [(base - around, base + around)]
-        for low, high in _boxes(model, data):
+        for _, low, high in seen:
             if np.linalg.norm((np.clip(base, low, high) - base)[:2]) <= NEAR:
                 boxes.append((np.maximum(low, base - NEAR), np.minimum(high, base + NEAR)))
         self.corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
         """The corners of the bounding boxes of all objects on the stage `(n, 3)` [m]."""
         self.low, self.high = self.corners.min(axis=0), self.corners.max(axis=0)
-        self.ground = _ground(model)
-        """The height of the ground [m]."""
-        own = [box for box, body in zip(_boxes(model, data), _bodies(model), strict=True) if self._of_body(model, body)]
+        self.ground = max(grounds_of(model), default=0.0)
+        """The height of the highest plane of the world [m]; 0 if there is none."""
+        own = [(low, high) for body, low, high in seen if self._of_body(model, body)]
         self.own = [get_body_name(model, body) for body in range(1, model.nbody) if self._of_body(model, body)]
         """The names of the body and its parts in viser's tree."""
         least = np.array((0.0, 0.0, SMALLEST / 2))
@@ -95,28 +96,17 @@ class SceneFraming:
         return self.body == 0 or bool(model.body_rootid[body] == model.body_rootid[self.body])
 
 
-def _ground(model: MjModel) -> float:
-    """Returns the height of the highest plane of the world [m]; 0 if there is none."""
-    heights = model.geom_pos[(model.geom_type == mjtGeom.mjGEOM_PLANE) & (model.geom_bodyid == 0), 2]
-    return float(heights.max()) if heights.size else 0.0
+def grounds_of(model: MjModel) -> list[float]:
+    """Returns the heights of the planes of the world [m]."""
+    return sorted(set(model.geom_pos[(model.geom_type == mjtGeom.mjGEOM_PLANE) & (model.geom_bodyid == 0), 2].tolist()))
 
 
-def _seen(model: MjModel) -> Any:
-    """Returns the numbers of the visible geoms except planes."""
-    return np.flatnonzero((model.geom_type != mjtGeom.mjGEOM_PLANE) & (model.geom_rgba[:, 3] > 0))
-
-
-def _bodies(model: MjModel) -> list[int]:
-    """Returns the MuJoCo bodies of the visible geoms."""
-    return model.geom_bodyid[_seen(model)].tolist()
-
-
-def _boxes(model: MjModel, data: MjData) -> list[tuple[Any, Any]]:
-    """Returns the lowest and the highest corner of the bounding box of each visible geom."""
-    found: list[tuple[Any, Any]] = []
-    for number in _seen(model):
+def _boxes(model: MjModel, data: MjData) -> list[tuple[int, Any, Any]]:
+    """Returns the MuJoCo body of each visible geom except planes, and the lowest and the highest corner of the geom's bounding box."""
+    found: list[tuple[int, Any, Any]] = []
+    for number in np.flatnonzero((model.geom_type != mjtGeom.mjGEOM_PLANE) & (model.geom_rgba[:, 3] > 0)):
         turned = data.geom_xmat[number].reshape(3, 3)
         middle = data.geom_xpos[number] + turned @ model.geom_aabb[number, :3]
         half = np.abs(turned) @ model.geom_aabb[number, 3:]
-        found.append((middle - half, middle + half))
+        found.append((int(model.geom_bodyid[number]), middle - half, middle + half))
     return found

@@ -91,13 +91,7 @@ def config_of(app: Any) -> uvicorn.Config:
 
 
 def serve(app: Any, listening: socket.socket, started: Callable[[], None]) -> None:
-    """Serves until the process is interrupted or terminated.
-
-    Args:
-        app: The application.
-        listening: The listening socket.
-        started: Called once the server accepts requests.
-    """
+    """Serves until the process is interrupted or terminated; calls `started` once it accepts requests."""
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
     with suppress(KeyboardInterrupt):  # the usual way to end it
         _Server(config_of(app), started, app.state.leave).run(sockets=[listening])

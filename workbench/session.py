@@ -691,12 +691,8 @@ class Session(Broadcast, Receiver):
 
 
 def never_begun(state: State | None, log: LatestEvents) -> bool:
-    """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
-
-    Args:
-        state: Its newest state; None if it has not sent any.
-        log: Its events.
-    """
+    """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless. False if it has
+    not sent a state yet."""
     if state is None or state.furthest > 0 or state.status != "paused":
         return False
     _, events = log.since(0)

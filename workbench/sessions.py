@@ -37,19 +37,19 @@ class NoSuchSessionError(SessionError):
 
 
 class PermissionNeededError(SessionError):
-    """Code of a recording that this installation did not make would be run without the user's permission."""
+    """Code of a recording or experiment that this installation did not make would be run without the user's permission."""
 
     status = 403
 
+    def __init__(self, what: str) -> None:
+        super().__init__(
+            f"this installation did not make the {what} (or it was changed since), and the code in it would be run: "
+            'send "trust": true if you know where it comes from'
+        )
+
 
 class Sessions:
-    """Starts and ends sessions.
-
-    Args:
-        folder: The folder of the models.
-        recordings: The folder of the recordings.
-        workers: The pool that starts workers.
-    """
+    """Starts and ends sessions."""
 
     def __init__(self, folder: ModelFolder, recordings: Recordings, workers: Workers) -> None:
         self.folder = folder
@@ -131,11 +131,7 @@ class Sessions:
             return RecordedStart.from_json(made.read())
 
     async def trusted(self, recording: str, trust: bool) -> RecordedStart:
-        """Returns what a recorded run began with, if its code may be run.
-
-        Args:
-            recording: The name of the recording.
-            trust: Whether the user permits running code that this installation has not recorded itself.
+        """Returns what a recorded run began with, if its code may be run; with `trust`, also code that this installation has not recorded.
 
         Raises:
             PermissionNeededError: If the code may not be run.
@@ -144,10 +140,7 @@ class Sessions:
         """
         start = await self.recorded_start(recording)
         if not (start.made_here or trust):
-            raise PermissionNeededError(
-                "this installation did not make the recording (or it was changed since), and the code in it would be run: "
-                'send "trust": true if you know where it comes from'
-            )
+            raise PermissionNeededError("recording")
         return start
 
     async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False, record: bool = True) -> Session:

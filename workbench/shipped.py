@@ -20,12 +20,8 @@ def shipped() -> Path:
 
 
 def models_folder(named: Path | None, present: Path, home: Path) -> Path:
-    """Returns the folder to work in; creates and fills it if there is none.
-
-    Args:
-        named: The folder that the user named, if any.
-        present: The current folder.
-        home: The user's home folder.
+    """Returns the folder to work in: the one that the user named, else `models` in the present folder, else one at home, which is created
+    and filled if there is none.
 
     Raises:
         OSError: If the folder cannot be created or read.

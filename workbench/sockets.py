@@ -85,12 +85,7 @@ async def socket(websocket: WebSocket) -> None:
 
 
 class _Page:
-    """Serves one browser on the websocket.
-
-    Args:
-        websocket: Its websocket.
-        sessions: The sessions it can show.
-    """
+    """Serves one browser on the websocket."""
 
     def __init__(self, websocket: WebSocket, sessions: Sessions) -> None:
         self._websocket = websocket

@@ -82,11 +82,7 @@ def move_to_trash(root: Path, path: Path, *companions: Path, label: Label | None
 
 
 def restore_from_trash(root: Path, trash: str) -> Deleted:
-    """Moves a deleted file or folder back to where it was, with what belongs to it.
-
-    Args:
-        root: The models folder.
-        trash: Its path inside the models folder, as `move_to_trash` has returned it.
+    """Moves a deleted file or folder back to where it was, with what belongs to it; `trash` is the path that `move_to_trash` has returned.
 
     Raises:
         NotInTrashError: If it is not in the trash folder.

@@ -18,11 +18,7 @@ SHADOWS_HEADER = "x-workbench-shadows"
 
 
 def start_viser(secret: str) -> Any:
-    """Starts viser's server, which admits only clients that know the secret, and opens no tunnel.
-
-    Args:
-        secret: The secret that the bridge sends.
-    """
+    """Starts viser's server, which admits only clients that know the secret, and opens no tunnel."""
     import rich
     import viser
     from viser import _messages
@@ -66,9 +62,6 @@ class Moments:
 
     A browser moves all shapes at once, one or more frames after their poses have arrived. The number is the position of one more,
     invisible shape, so a browser knows it exactly when the other shapes have moved.
-
-    Args:
-        server: Viser's server.
     """
 
     def __init__(self, server: Any) -> None:

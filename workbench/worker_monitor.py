@@ -54,13 +54,7 @@ class Receiver(ABC):
 
 
 class WorkerMonitor:
-    """Monitors one worker until it has ended.
-
-    Args:
-        worker: The worker.
-        start: What the worker must do.
-        receiver: Receives the worker's messages and its end.
-    """
+    """Monitors one worker until it has ended."""
 
     def __init__(self, worker: Worker, start: Start, receiver: Receiver) -> None:
         self._worker = worker

@@ -38,6 +38,8 @@ FINEST = 1e-5
 """The least standard deviation of a distribution."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
+RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
+"""Names of columns of human data and of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
 OWN_NUMBERS = ("seed", "until", "limit")
 """Numbers of a design that `Design.changed` changes under these names."""
 
@@ -280,7 +282,10 @@ class Design(Configuration):
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
         if isinstance(self.measures, (str, bytes)):
             raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
-        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}
+        given, columns = [one.name for one in self.kept], self.taken
+        for name in self.factors:
+            if (shown := factor_name(name)) != name and shown in {*self.factors, *given}:
+                raise DesignError(f"Design: '{shown}' is what reports call the factor '{name}'; rename one of them", shown)
         for measure in self.kept:
             if given.count(measure.name) > 1:
                 raise DesignError(f"Design.measures: '{measure.name}' is there twice", measure.name)
@@ -293,6 +298,12 @@ class Design(Configuration):
                 raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
             if name in OWN_NUMBERS:
                 raise DesignError(f"Design: '{name}' is a number of the design itself; rename the parameter", name)
+
+    @cached_property
+    def taken(self) -> frozenset[str]:
+        """The names that no measure can have, because other columns have them in the table of trials or in a report."""
+        grouped = {name for group in self.groups.values() for name in group.parameters}
+        return frozenset({*self.factors, *map(factor_name, self.factors), *self.settings, *grouped, *OWN_COLUMNS})
 
     @property
     def kept(self) -> tuple[Measured, ...]:
@@ -451,16 +462,20 @@ class Design(Configuration):
                 of_groups.setdefault(name, {})[group_name] = value
         return {**of_groups, "--trials": self.trials, **self.factors, **self.settings, **own}
 
+    def all_values(self) -> dict[str, Any]:
+        """Returns all values by name, without functions: those of `changeable`, and `Design.model`, `Design.order` and the like."""
+        return {**self.changeable(), **{f"Design.{name}": getattr(self, name) for name in ("model", "measures", "order", "human")}}
+
     def changed_names(self, there: Design) -> list[str]:
-        """Returns the names, as in `changeable`, of the values that differ from those of another design."""
-        before, now = there.changeable(), self.changeable()
+        """Returns the names of the values that differ from those of another design, as in `all_values`."""
+        before, now = there.all_values(), self.all_values()
         return [name for name in {**before, **now} if name not in before or name not in now or _key(before[name]) != _key(now[name])]
 
     def differences_from(self, there: Design) -> list[str]:
-        """Returns in words which of the values that `changed` can change differ from those of another design ("there")."""
+        """Returns in words which values differ from those of another design ("there")."""
         found: list[str] = []
         for name in self.changed_names(there):
-            before, now = (repr(given[name]) if name in given else "not set" for given in (there.changeable(), self.changeable()))
+            before, now = (repr(given[name]) if name in given else "not set" for given in (there.all_values(), self.all_values()))
             found.append(f"{name}: {before} there, {now} now")
         return found
 
@@ -624,6 +639,11 @@ def text_cell(value: Any) -> str | None:
     if value is None or isinstance(value, str):
         return value
     return None if isinstance(value, float) and math.isnan(value) else plain_text(value)
+
+
+def factor_name(name: str) -> str:
+    """Returns the name of a factor in human data and in the tables of a report."""
+    return f"{name}_" if name in RESERVED else name
 
 
 def _key(value: Any) -> Any:

@@ -33,9 +33,9 @@ from numpy.typing import NDArray
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean, reason_of
 from actr3d.experiment.cluster import ExperimentProgress, run_experiment
-from actr3d.experiment.design import DIGITS, HUGE, OWN_COLUMNS, OWN_NUMBERS, Design, Measured, plain_text
+from actr3d.experiment.design import DIGITS, HUGE, OWN_COLUMNS, OWN_NUMBERS, Design, Measured, factor_name, plain_text
 from actr3d.experiment.emulator import STEPS, Emulator
-from actr3d.experiment.human_data import HumanFile, Schema, factor_name, library_human_data, plain_levels
+from actr3d.experiment.human_data import HumanFile, Schema, library_human_data, plain_levels
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r
 from actr3d.experiment.specification import Experiment
@@ -227,7 +227,7 @@ class Fit:
     """A fit of parameters to means.
 
     Args:
-        design: The name or file of the design, for the result.
+        name: The name or file of the design, for the result.
         experiment: The experiment without the fitted parameters.
         ranges: The parameters and their ranges.
         target: The means to fit, of one measure.
@@ -245,7 +245,7 @@ class Fit:
 
     def __init__(
         self,
-        design: str,
+        name: str,
         experiment: Experiment,
         ranges: Sequence[Range],
         target: Sequence[TargetMean],
@@ -256,7 +256,7 @@ class Fit:
         progress: ProgressBar = lambda _what, _total: nullcontext(lambda _: None),
         evaluated: Callable[[float], object] = lambda _rmse: None,
     ) -> None:
-        self._design, self._base, self._ranges, self._folder, self._open_cluster = design, experiment, tuple(ranges), folder, open_cluster
+        self._name, self._base, self._ranges, self._folder, self._open_cluster = name, experiment, tuple(ranges), folder, open_cluster
         self._seed, self._progress, self._evaluated, self._client = seed, progress, evaluated, None
         if not ranges:
             raise SettingError("--parameter: must be given at least once, as NAME=LOW..HIGH")
@@ -300,7 +300,7 @@ class Fit:
         self,
         candidates: int,
         *,
-        hold_out: Mapping[str, HeldOut] | None = None,
+        held_out: Mapping[str, HeldOut] | None = None,
         ablate: Sequence[str] = (),
         recover: int = 0,
     ) -> FitResult:
@@ -308,7 +308,7 @@ class Fit:
 
         Args:
             candidates: The number of candidates.
-            hold_out: Other designs, by name. The values of the fit's experiment hold for them too, its numbers do not.
+            held_out: Other designs, by name. The values of the fit's experiment hold for them too, its numbers do not.
             ablate: Changes of the model, `NAME=VALUE`, whose effects are shown.
             recover: The number of simulated data sets whose parameters are estimated.
 
@@ -318,19 +318,19 @@ class Fit:
             SettingError: If an ablation is not NAME=VALUE; before anything runs.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
-        hold_out = hold_out or {}
+        held_out = held_out or {}
         lowest = {one.name: one.low for one in self._ranges}
-        for name, held_out in hold_out.items():
-            cells = cells_of_target(held_out.target, f"--hold-out {name}")
-            if held_out.target[0].measure == self.measure and cells == self.target:
+        for name, one in held_out.items():
+            cells = cells_of_target(one.target, f"--hold-out {name}")
+            if one.target[0].measure == self.measure and cells == self.target:
                 raise ExperimentError(f"--hold-out {name}: its means are those of the fit; name a design, or data, that are not fitted")
-            _check_in_common(cells, self._other(name, held_out.experiment, lowest).design, f"--hold-out {name}")
+            _check_in_common(cells, self._held_out_at(lowest, name, one).design, f"--hold-out {name}")
         for change in ablate:
             _check_in_common(self.target, self._ablated(change, lowest).design, f"--ablate {change}")
         with self._open_cluster() as self._client:
-            return self._result(candidates, hold_out, ablate, recover)
+            return self._result(candidates, held_out, ablate, recover)
 
-    def _result(self, candidates: int, hold_out: Mapping[str, HeldOut], ablate: Sequence[str], recover: int) -> FitResult:
+    def _result(self, candidates: int, held_out: Mapping[str, HeldOut], ablate: Sequence[str], recover: int) -> FitResult:
         """Runs all candidates and what else is asked for; see `run`."""
         for number in range(candidates):
             self._evaluate(number, f"candidate {number + 1} of {candidates}")
@@ -353,7 +353,7 @@ class Fit:
         if not math.isfinite(loss) or (losses[best] < loss and not is_confirmed):
             values, fitted = self._points[best], tried[best]
         return FitResult(
-            design=self._design,
+            design=self._name,
             measure=self.measure,
             parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
             fit=_agreement_of(fitted, self.target),
@@ -364,7 +364,7 @@ class Fit:
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
             ),
-            held_out={name: self._held_out(name, one, values) for name, one in hold_out.items()},
+            held_out={name: self._predicted(values, name, one) for name, one in held_out.items()},
             ablated={change: self._compared("ablated", f"changed: {change}", self._ablated(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )
@@ -509,14 +509,14 @@ class Fit:
 
     # -- other designs, other models, other data
 
-    def _other(self, design: str, other: Experiment, values: Mapping[str, Any]) -> Experiment:
+    def _held_out_at(self, values: Mapping[str, Any], design: str, held_out: HeldOut) -> Experiment:
         """Returns a held-out design with the values of the fit; its participants, trials and factors are its own.
 
         Raises:
             DesignError: If it has a factor whose levels would be replaced, or does not fit the values.
         """
         values = {**self._base.specification.values, **values}
-        varied = other.design.factors
+        varied = held_out.experiment.design.factors
         for name in values:
             if name in varied:
                 option = "--parameter" if name in self._names else "--set"
@@ -525,13 +525,13 @@ class Fit:
                     f"--hold-out {design}: varies {name} ({levels}), which {option} {name} would replace; leave out one", name
                 )
         try:
-            return Experiment(replace(other.specification, values=values))
+            return Experiment(replace(held_out.experiment.specification, values=values))
         except DesignError as error:
             raise DesignError(f"--hold-out {design}: {error}", error.name) from None
 
-    def _held_out(self, name: str, held_out: HeldOut, values: Mapping[str, float]) -> Agreement:
-        experiment, cells = self._other(name, held_out.experiment, values), cells_of_target(held_out.target)
-        return self._compared("hold-out", f"held out: {name}", experiment, held_out.target[0].measure, cells)
+    def _predicted(self, values: Mapping[str, float], design: str, held_out: HeldOut) -> Agreement:
+        experiment, cells = self._held_out_at(values, design, held_out), cells_of_target(held_out.target)
+        return self._compared("hold-out", f"held out: {design}", experiment, held_out.target[0].measure, cells)
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Experiment:
         """Returns the experiment of the fit with one value of the model changed.

@@ -42,7 +42,7 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean, reason_of
-from actr3d.experiment.design import HUGE, plain_text
+from actr3d.experiment.design import HUGE, factor_name, plain_text
 from actr3d.parameter_schema import Parameter
 from actr3d.values import shortened
 
@@ -58,13 +58,6 @@ PATIENCE = 5.0
 """The maximum time in which a program must open a pipe to write human data to it [s]; then it may take as long as it needs."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
 """The columns of published means that are not factors."""
-RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
-"""Names of columns of human data and of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
-
-
-def factor_name(name: str) -> str:
-    """Returns the name of a factor in human data and in the tables of a report."""
-    return f"{name}_" if name in RESERVED else name
 
 
 def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
@@ -155,7 +148,7 @@ def _bytes(path: Path | str) -> bytes:
     """Returns what a file holds, or a pipe receives, up to one byte more than is allowed.
 
     Raises:
-        OSError: If it cannot be read, or is a pipe to which no program writes.
+        OSError: If it cannot be read, or is a pipe to which nothing is written in time.
     """
     with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
         begin: bytes | None = b""
@@ -164,10 +157,11 @@ def _bytes(path: Path | str) -> bytes:
             # Without a writer, reading returns nothing at once; with one that has not written yet, it returns None.
             while (begin := file.raw.read(1)) == b"":
                 if time.monotonic() > end:
-                    raise OSError("it is a pipe to which no program writes")
+                    raise OSError(f"it is a pipe, and nothing was written to it within {PATIENCE:g} s")
                 time.sleep(0.02)
         os.set_blocking(file.fileno(), True)
-        return (begin or b"") + file.read(MAX_BYTES + 1)
+        begin = begin or b""
+        return begin + file.read(MAX_BYTES + 1 - len(begin))
 
 
 class HumanFile:

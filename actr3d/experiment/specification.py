@@ -294,10 +294,10 @@ def specify(
     """
     path, chosen = _file_of(name)
     source = _source_of(path)
+    marked = _marked(source)
+    if (most := max(marked, key=marked.count, default="")) and marked.count(most) > 1:
+        raise ExperimentError(f"{path}: defines the design '{most}' {marked.count(most)} times; give each another name")
     if not chosen:
-        marked = _marked(source)
-        if len(marked) != 1 and len({*marked}) == 1:
-            raise ExperimentError(f"{path}: defines the design '{marked[0]}' {len(marked)} times; give each another name")
         if len(marked) != 1:
             found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
             raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
@@ -320,7 +320,8 @@ def specify(
     if different := of_design.changed_names(experiment.written):  # each process loads it again
         with naming_the_line(source, chosen):
             names = ", ".join(different)
-            raise DesignError(f"{chosen}() must return the same design each time (different: {names}); draw with a seed", different[0])
+            same = f"{chosen}() must return the same design each time (different: {names}); draw with a seed"
+            raise DesignError(same, different[0].removeprefix("Design."))
     human = experiment.design.human
     if human is not None and human not in people:
         with naming_the_line(source, chosen):
@@ -460,7 +461,8 @@ def _refusing_to_end(file: str) -> Generator[None]:
     try:
         yield
     except SystemExit as error:
-        raise ExperimentError(f"{file}: must not end the program when it is loaded (it ended with {error!r})") from None
+        line = next((f":{one.lineno}" for one in reversed(extract_tb(error.__traceback__)) if one.filename == file), "")
+        raise ExperimentError(f"{file}{line}: must not end the program when it is loaded (it ended with {error!r})") from error
 
 
 def design_in(module: ModuleType, name: str, source: Source) -> Design:
@@ -481,7 +483,7 @@ def design_in(module: ModuleType, name: str, source: Source) -> Design:
         try:
             found = known[name]()
         except SystemExit as error:
-            raise DesignError(f"{name}() must return a Design (it ended with {error!r})") from None
+            raise DesignError(f"{name}() must return a Design (it ended with {error!r})") from error
         if not isinstance(found, Design):
             raise DesignError(f"{name}() must return a Design (returned {found!r})")
     return found

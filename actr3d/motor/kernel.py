@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.jit import compile_cached
+from actr3d.jit import compiled_on_demand
 
 Row = NDArray[np.float64]
 
@@ -19,19 +17,15 @@ UNIT, GRID, PLACE, LOW, HIGH, MINIMUM, MAXIMUM, LEAST, MOST, STEP = range(10)
 the greatest value since that multiple last changed, and ever; those in the postures that were stored, and the step that makes a new one."""
 
 
-@cache
-def note_felt() -> Callable[[Row, Row, NDArray[np.intp]], int]:
-    """Returns the function that notes felt values in the rows above.
+@compiled_on_demand(Path(__file__))
+def note_felt(values: Row, rows: Any, new: NDArray[np.intp]) -> int:
+    """Notes felt values in the rows above.
 
     Its arguments are the values (n,), the rows (10, n), and room for numbers (n,). It puts there the numbers of the values whose place
     on the grid has changed, or that are at least one step beyond their extremes in all earlier postures; it returns how many they are.
 
     A value between two others with the same place on the grid has that place too, and is no new extreme.
     """
-    return compile_cached(_note_felt, Path(__file__))
-
-
-def _note_felt(values: Row, rows: Any, new: NDArray[np.intp]) -> int:
     count = 0
     for number in range(len(values)):
         at = values[number]

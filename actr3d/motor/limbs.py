@@ -81,9 +81,8 @@ class Limbs:
         """By joint, the unit of its position in commands: a degree in radians, or a metre."""
         self.group_of: dict[str, str] = {joint.name: part.name for part in plan.parts for joint in part.joints}
         """By joint, its muscle group: that of its part."""
-        self.walks = "walk" in plan.actuators
         moved = {part.name: None for part in plan.parts if any(joint.driven for joint in part.joints)}
-        self.groups: tuple[str, ...] = tuple(dict.fromkeys([*([BASE_GROUP] if self.walks else []), *moved]))
+        self.groups: tuple[str, ...] = tuple(dict.fromkeys([*([BASE_GROUP] if "walk" in plan.actuators else []), *moved]))
         """All muscle groups."""
         self.fastest = plan.fastest or (math.inf, math.inf, math.inf)
         """Greatest speeds of walking [m/s], turning [rad/s] and joints [rad/s]."""
@@ -97,10 +96,10 @@ class Limbs:
         whose = self.plan.name
         if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
             checked_name(name, self.joints, whose, "joint" if axis is None else "jointed part")
+        of = [joint for joint, part in self.group_of.items() if part == name]
         if axis is None:
             if name in self.joints:
                 return name
-            of = [joint for joint, part in self.group_of.items() if part == name]
             if len(of) == 1:
                 return of[0]
             if not of:
@@ -108,10 +107,9 @@ class Limbs:
             axes = ", ".join(dict.fromkeys(self.joints[joint].axis for joint in of))
             raise WorldError(f"{whose}: '{name}' has several joints; give the axis: {axes}")
         by_axis: dict[str, list[str]] = {}
-        for joint, part in self.group_of.items():
-            if part == name:
-                by_axis.setdefault(self.joints[joint].axis, []).append(joint)
-        if not by_axis:
+        for joint in of:
+            by_axis.setdefault(self.joints[joint].axis, []).append(joint)
+        if not of:
             checked_name(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
         first, *others = by_axis[checked_name(axis, by_axis, f"{whose}: {name}", "axis")]
         if others:

@@ -234,8 +234,7 @@ class Writer:
     def _begin(self, facts: Sequence[tuple[str, str]]) -> None:
         for table in SCHEMA:
             self._file.execute(table)
-        _insert_facts(self._file, self._checksums, facts)
-        self._seal(self._file, self._checksums)
+        self._seal(self._file, self._checksums, facts)
 
     def _write(self) -> None:
         """Writes all items that it has received in one transaction."""
@@ -267,8 +266,7 @@ class Writer:
             self._written["ticks"] += sum(1 for state in row if state.tick)
         for command in commands:
             self._insert("commands", 1, *command)
-        _insert_facts(self._file, self._checksums, facts)
-        self._seal(self._file, self._checksums)
+        self._seal(self._file, self._checksums, facts)
 
     def _insert(self, table: str, count: int, *values: int | str | bytes) -> None:
         """Writes the next row of a table, with `count` items."""
@@ -277,8 +275,11 @@ class Writer:
         self._file.execute(f"INSERT INTO {table} VALUES (?{', ?' * len(COLUMNS[table])})", (first, *values, checksum))
         self._written[table] = first + count
 
-    def _seal(self, file: sqlite3.Connection, checksums: Checksums) -> None:
-        """Writes the checksum of everything, and the seal of this installation."""
+    def _seal(self, file: sqlite3.Connection, checksums: Checksums, facts: Sequence[tuple[str, str]] = ()) -> None:
+        """Writes facts; then the checksum of everything, and the seal of this installation."""
+        for name, value in facts:
+            file.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
+            checksums.fact(name, value)
         checksum = checksums.whole()
         file.execute("INSERT OR REPLACE INTO seal VALUES (0, ?, ?)", (checksum, b"" if self._key is None else seal(self._key, checksum)))
 
@@ -328,9 +329,7 @@ class Writer:
         """Adds facts to a copy. If the run has not ended by then, adds the fact `ended` with `by: left`."""
         over = copy.execute("SELECT 1 FROM facts WHERE name IN ('ended', 'failed') AND value != 'null'").fetchone()
         added = [*facts, *([] if over else [("ended", json.dumps({"by": LEFT}))])]
-        checksums = deepcopy(self._checksums)
-        _insert_facts(copy, checksums, added)
-        self._seal(copy, checksums)
+        self._seal(copy, deepcopy(self._checksums), added)
 
     def _finish(self) -> None:
         # With a rollback journal (DELETE mode), a closed file stands alone, and can be read in a read-only folder.
@@ -341,13 +340,6 @@ class Writer:
             # Another program is reading the file: it is complete anyway, and the last one to close it removes its companions.
             if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
                 raise
-
-
-def _insert_facts(file: sqlite3.Connection, checksums: Checksums, facts: Sequence[tuple[str, str]]) -> None:
-    """Writes facts, with their checksums."""
-    for name, value in facts:
-        file.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
-        checksums.fact(name, value)
 
 
 def _remove(path: Path) -> None:

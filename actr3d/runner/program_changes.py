@@ -19,7 +19,6 @@ from actr3d.recording.reader import RecordedCommand
 from actr3d.trace import renumbered, top_path
 
 if TYPE_CHECKING:
-    from actr3d.actr.kernel.model import Model
     from actr3d.actr.kernel.scheduler import Scheduler
     from actr3d.simulation import Simulation
 
@@ -117,7 +116,8 @@ class ProgramChanges:
         before, total = sch.now_us, sch.queue.sum
         sch.catch_up(time)
         try:
-            change.carry_out(Parts(self._tops(sch)))
+            runs = () if self._limits.trace is None else self._limits.trace.runs
+            change.carry_out(Parts(dict.fromkeys(top_of(run.model) for run in runs if _is_of(run.model, sch))))
         except BaseException:
             sch.now_us, sch.queue.sum = before, total
             raise
@@ -126,10 +126,6 @@ class ProgramChanges:
             limits.trace.emit(time, top_path(number), "command", data)
         if limits.recorder is not None:
             limits.recorder.command(number, time, data)
-
-    def _tops(self, sch: Scheduler) -> list[Model]:
-        runs = () if self._limits.trace is None else self._limits.trace.runs
-        return list(dict.fromkeys(top_of(run.model) for run in runs if _is_of(run.model, sch)))
 
     def _number(self, sch: Scheduler) -> int:
         """Returns the number of a run in the trace."""

@@ -16,8 +16,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from types import FrameType
-from typing import Any, NoReturn, TypeVar
+from typing import Any, TypeVar
 
 from actr3d.errors import Actr3dError, UntrustedError
 from actr3d.recording import Recorded
@@ -121,13 +120,9 @@ def _ended_in_order() -> Generator[None]:
     signs = [signal.SIGTERM, signal.SIGHUP]
     before: dict[signal.Signals, Any] = {sign: signal.getsignal(sign) for sign in signs if signal.getsignal(sign) is signal.SIG_DFL}
     for sign in before:
-        signal.signal(sign, _leave)
+        signal.signal(sign, lambda number, _: sys.exit(128 + number))
     try:
         yield
     finally:
         for sign, handler in before.items():
             signal.signal(sign, handler)
-
-
-def _leave(number: int, _: FrameType | None) -> NoReturn:
-    sys.exit(128 + number)

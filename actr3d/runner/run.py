@@ -69,25 +69,12 @@ def run_source(
     record: Path | str | None = None,
     helpers: HelperTexts | None = None,
 ) -> Any:
-    """Runs the text of a model file, as `run_model` runs the file.
+    """Runs the text of a model file, as `run_model` runs the file: the other arguments, the result and the errors are the same.
 
     Args:
         source: The text.
         file: The name of the file; its helper modules are in the same folder.
-        limits: Its seed, end and trace.
-        settings: Values of the parameters of its `build`, or a function that returns them.
-        record: The new file for a recording of the run; None for no recording.
         helpers: Provides the texts of the helper modules; None to load them from the folder.
-
-    Returns:
-        The result of the run, if the simulation measures one; None otherwise.
-
-    Raises:
-        ModelFileError: If the text is not Python 3, or its `build` is not valid.
-        SettingError: If parameters are given to a program, or are not valid for the model.
-        ParameterError: If a recording is requested with a trace of less than everything.
-        RecordingError: If the recording cannot be created or written.
-        Exception: Any error that the model raises.
     """
     helpers = HelperTexts() if helpers is None else helpers
     check_build(source, file)

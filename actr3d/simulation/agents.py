@@ -76,31 +76,6 @@ class Agents:
         """Whether no agent has anything left to do, now or ever."""
         return not (self._sch.queue.heap or self._sch.incoming or self.outbox)
 
-    def may_run(self, end: int) -> bool:
-        """Returns whether the limits of the program leave time until `end` [us].
-
-        Raises:
-            EndOfRun: If an earlier run was cut short by them.
-        """
-        limits = self._sch.limits
-        last = None if limits is None else limits.clip()
-        return last is None or end <= last
-
-    def claim(self, end: int) -> None:
-        """Checks that the limits of the program leave time until `end` [us].
-
-        Raises:
-            EndOfRun: If they do not.
-        """
-        limits = self._sch.limits
-        if limits is not None and not self.may_run(end):
-            limits.refuse(end)
-
-    def cut(self, end: int) -> None:
-        """Notes that the limits of the program have cut the run short, because they leave no time until `end` [us]."""
-        if self._sch.limits is not None:
-            self._sch.limits.cut(end)
-
     def run(self, period: float) -> None:
         """Runs the agents for a period [s]; to its end even where one of them calls `stop`."""
         sch = self._sch

@@ -38,9 +38,12 @@ class MT19937(numpy.random.MT19937):
 
 
 class Numbers(NamedTuple):
-    """The source of numpy's global random numbers."""
+    """The state of all global random numbers."""
 
+    pythons: Any
+    """The state of `random`; None before the start of a run, which seeds it."""
     bits: BitGenerator
+    """The source of numpy's."""
     rest: Any
     """The state beside the generator; for another kind of generator, all of its state."""
 
@@ -52,22 +55,22 @@ class GlobalRandom:
     nested; only the outermost takes time, about 20 us. Simulations in two threads at once still share them.
     """
 
-    __slots__ = ("_depth", "_others", "_own")
+    __slots__ = ("_depth", "_kept")
 
     def __init__(self) -> None:
-        self._own: tuple[Any, Numbers] = (None, _own_numbers())
-        self._others: tuple[Any, Numbers] | None = None
+        self._kept = Numbers(None, MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
+        """Those that are not in place: outside the block the simulation's own, inside it the others."""
         self._depth = 0
 
     def __enter__(self) -> None:
         if not self._depth:
-            self._put_in_place()
+            self._exchange()
         self._depth += 1
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         self._depth -= 1
         if not self._depth:
-            self._put_back()
+            self._exchange()
 
     @contextmanager
     def aside(self) -> Generator[None]:
@@ -76,40 +79,24 @@ class GlobalRandom:
             yield
             return
         depth, self._depth = self._depth, 0
-        self._put_back()
+        self._exchange()
         try:
             yield
         finally:
-            self._put_in_place()
+            self._exchange()
             self._depth = depth
 
-    def _put_in_place(self) -> None:
-        self._others = _present()
-        _put(self._own)
-
-    def _put_back(self) -> None:
-        self._own = _present()
-        assert self._others is not None
-        _put(self._others)
-
-
-def _present() -> tuple[Any, Numbers]:
-    return random.getstate(), _present_numbers()
+    def _exchange(self) -> None:
+        """Puts the simulation's own numbers in the place of the others, or the others back."""
+        numbers, self._kept = self._kept, _present()
+        if numbers.pythons is not None:
+            random.setstate(numbers.pythons)
+        NUMPY.set_bit_generator(numbers.bits)
+        with _apart(numbers.bits):
+            NUMPY.set_state(numbers.rest)
 
 
-def _put(numbers: tuple[Any, Numbers]) -> None:
-    state, of_numpy = numbers
-    if state is not None:  # a run seeds its own at its start
-        random.setstate(state)
-    _put_numbers(of_numpy)
-
-
-def _own_numbers() -> Numbers:
-    """Returns new, unshared numbers; the caller seeds them."""
-    return Numbers(MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
-
-
-def _present_numbers() -> Numbers:
+def _present() -> Numbers:
     """Returns the present numbers, to restore them later."""
     bits = NUMPY.get_bit_generator()
     if type(bits) is NUMPY.MT19937:
@@ -118,14 +105,7 @@ def _present_numbers() -> Numbers:
         NUMPY.set_bit_generator(bits)
         NUMPY.set_state(state)
     with _apart(bits):
-        return Numbers(bits, NUMPY.get_state(legacy=False))
-
-
-def _put_numbers(numbers: Numbers) -> None:
-    """Sets numpy's global random numbers."""
-    NUMPY.set_bit_generator(numbers.bits)
-    with _apart(numbers.bits):
-        NUMPY.set_state(numbers.rest)
+        return Numbers(random.getstate(), bits, NUMPY.get_state(legacy=False))
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.modules.answers import copied_answer
 from actr3d.actr.modules.port import Request, note_request
 from actr3d.clock import seconds
@@ -48,6 +49,7 @@ class Lockstep:
         self._period = seconds(period)
         self.trace = log.begin()
         """Its trace; None if nothing is traced."""
+        self._limits = RunLimits.current()
         self._stdout = log.stdout
         with self._stdout:
             self.agents = Agents(factories, bodies, seed, self.trace, period)
@@ -79,11 +81,18 @@ class Lockstep:
         Raises:
             EndOfRun: If an earlier run was cut short by them.
         """
-        return self.agents.may_run((self.ticks + 1) * self._period_us)
+        last = None if self._limits is None else self._limits.clip()
+        return last is None or self._end <= last
 
     def cut(self) -> None:
         """Notes that the limits of the program have cut the run short."""
-        self.agents.cut((self.ticks + 1) * self._period_us)
+        if self._limits is not None:
+            self._limits.cut(self._end)
+
+    @property
+    def _end(self) -> int:
+        """The end of the next tick [us]."""
+        return (self.ticks + 1) * self._period_us
 
     def tick(self) -> None:
         """Runs the agents for one period.
@@ -94,7 +103,8 @@ class Lockstep:
             Exception: What an agent raises.
         """
         self._expect("ready", "tick")
-        self.agents.claim((self.ticks + 1) * self._period_us)
+        if self._limits is not None and not self.may_tick():
+            self._limits.refuse(self._end)
         self._phase = "failed"
         with self._stdout:
             self.agents.run(self._period)

@@ -524,7 +524,7 @@ class Simulation:
             raise SimulationError("this run is being recorded already; what records it holds everything")
         recording = Recording(path, self.facts(**facts))
         self.event_log.record(recording)
-        recording.ending = self._end_recording
+        recording.ending = lambda: self.event_log.end_recording(whole=self.timeline.begun and not self.timeline.lockstep.broken)
         return recording
 
     def facts(self, **given: Any) -> dict[str, Any]:
@@ -539,9 +539,6 @@ class Simulation:
         world = self.world
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": world.scene.timestep_us, "scene": world.fingerprint}
         return _facts_of(own | scene_facts(world), given, [*self._embodied.values(), *self._bodiless.values()])
-
-    def _end_recording(self) -> None:
-        self.event_log.end_recording(whole=self.timeline.begun and not self.timeline.lockstep.broken)
 
 
 def _sources_of(factories: Iterable[Any]) -> dict[str, str]:

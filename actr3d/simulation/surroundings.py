@@ -17,7 +17,7 @@ def surroundings(world: World) -> dict[str, Any]:
             "shoulders": body.anatomy.shoulders,
             "eye": body.eye,
             "root": body.root,
-            "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
+            "joints": {joint.name: [limit if math.isfinite(limit) else None for limit in joint.limits] for joint in body.joints.values()},
         }
         for name, body in world.bodies.items()
     }
@@ -28,7 +28,3 @@ def surroundings(world: World) -> dict[str, Any]:
 def scene_facts(world: World) -> dict[str, Any]:
     """Returns the facts with which a recording shows a world: its compiled model, and its surroundings."""
     return {"compiled": to_text(to_bytes(world.mj_model)), "world": surroundings(world)}
-
-
-def _finite(limit: float) -> float | None:
-    return limit if math.isfinite(limit) else None

@@ -187,7 +187,7 @@ class Vision(WithParameters, Searching):
         if self._top_down is not None:
             if self.rule == "sos":
                 return None
-            self._cancel(self._top_down)
+            self.sch.finish(self._top_down)
         if self._bottom_up is not None:
             self._waiting, self._bottom_up = self._bottom_up, None
         self._top_down = search = self._begin(Search(query, bottom_up=False, site=self._call_site()), self.delay)
@@ -215,7 +215,7 @@ class Vision(WithParameters, Searching):
         """Begins a bottom-up search, or delays it until the end of a top-down one. It replaces an earlier bottom-up search."""
         for earlier in (self._bottom_up, self._waiting):
             if earlier is not None:
-                self._cancel(earlier)
+                self.sch.finish(earlier)
         self._bottom_up = self._waiting = None
         search = Search(query, bottom_up=True, site=self._call_site())
         if self._top_down is not None:
@@ -240,10 +240,6 @@ class Vision(WithParameters, Searching):
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")
         embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, search.site, self, search))
-
-    def _cancel(self, search: Search) -> None:
-        """Cancels a search; generators that wait for it continue."""
-        self.sch.finish(search)
 
     # -- views
 

@@ -104,7 +104,8 @@ class Body:
         self.parts: tuple[str, ...] = tuple(self.part_name(int(member)) for member in np.flatnonzero(self.members))
         self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(physics, self.root, self.anatomy.prefix)
-        stepping = OWN if self.anatomy.gait is not None else ()
+        gait = self.anatomy.gait
+        stepping = () if gait is None else OWN
         every = self._joints()
         self._every = {joint.name: joint for joint in every}
         """All joints by name."""
@@ -125,9 +126,7 @@ class Body:
         self.reaches = reaches(model, self.members, self.touch_geoms)
         """By moving part and degree of freedom (n, nv): how far the part's farthest point moves at most per unit of the latter [m]."""
         dofs = ActuatedDofs(physics, self.anatomy, self.base, every, self.members)
-        cycle = None
-        if self.anatomy.gait is not None:
-            cycle = GaitCycle(*self.anatomy.gait, dofs.joints, (seed, *self.name.encode()))
+        cycle = None if gait is None else GaitCycle(*gait, dofs.joints, (seed, *self.name.encode()))
         self.hold = PostureHold(physics, self.members, dofs, self.base, self.contacts, cycle)
         self._places = np.array([joint.q for joint in self.joints.values()], dtype=np.intp)
         driven = [joint for joint in self.joints.values() if joint.driven]

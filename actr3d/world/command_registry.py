@@ -111,8 +111,8 @@ def checked_name(name: Any, names: Collection[str], whose: str, kind: str) -> st
     if isinstance(name, str) and name in names:
         return name
     has = f"it has {', '.join(names)}" if names else f"it has no {kind}s"
-    near = did_you_mean(name, names) if isinstance(name, str) else ""
-    raise WorldError(f"{whose} has no {kind} {_quoted(name)}{followed(near, has)}")
+    shown, near = (f"'{name}'", did_you_mean(name, names)) if isinstance(name, str) else (repr(name), "")
+    raise WorldError(f"{whose} has no {kind} {shown}{followed(near, has)}")
 
 
 def checked_function(name: Any, functions: Mapping[str, BodyFunction[B]], whose: str, kind: str) -> BodyFunction[B]:
@@ -129,10 +129,6 @@ def checked_function(name: Any, functions: Mapping[str, BodyFunction[B]], whose:
         how = f"Give its values as arguments of Python after the name: ({takes})" if takes else "It takes no values"
         raise WorldError(f"{whose} has no {kind} '{name}'; did you mean '{first}'? {how}")
     return functions[checked_name(name, functions, whose, kind)]
-
-
-def _quoted(name: Any) -> str:
-    return f"'{name}'" if isinstance(name, str) else repr(name)
 
 
 def checked_number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:

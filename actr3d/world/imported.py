@@ -119,7 +119,10 @@ class Imported(Configuration):
         if self.text is not None:
             name = f"{self.name}.xml"
             folder = AssetFolder(Path(self.folder), WorldError) if self.folder else AssetFolder(Path(), WorldError, ())
-            folder.put(name, _encoded(self.text))
+            try:
+                folder.put(name, self.text.encode())
+            except UnicodeEncodeError as error:
+                raise WorldError(f"the text cannot be written in UTF-8: {error}") from error
         else:
             path = resolved(Path(str(self.path)), WorldError)
             root = resolved(Path(self.folder), WorldError) if self.folder else _package_folder(path)
@@ -129,13 +132,6 @@ class Imported(Configuration):
             name = path.relative_to(root).as_posix()
         read_imported(folder, name)
         return folder.files
-
-
-def _encoded(text: str) -> bytes:
-    try:
-        return text.encode()
-    except UnicodeEncodeError as error:
-        raise WorldError(f"the text cannot be written in UTF-8: {error}") from error
 
 
 def _package_folder(path: Path) -> Path:

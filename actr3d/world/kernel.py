@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from mujoco import mjtGeom
 from numpy.typing import NDArray
 
-from actr3d.jit import compile_cached, inner_compiled
+from actr3d.jit import compiled_on_demand, inner_compiled
 
 Array: TypeAlias = NDArray[Any]
 
@@ -38,19 +36,15 @@ def extent(geom: Any, types: Array, sizes: Array, rotations: Array, u: float, v:
     return x * a + y * b + z * c
 
 
-@cache
-def extend_box() -> Callable[[Array, Array, Array, Array, Array, Array, Array, Array], None]:
-    """Returns the function that widens a box until it encloses some geoms.
+@compiled_on_demand(Path(__file__))
+def extend_box(
+    geoms: Array, types: Array, sizes: Array, positions: Array, rotations: Array, origin: Array, axes: Array, box: Array
+) -> None:
+    """Widens a box until it encloses some geoms.
 
     Its arguments are: the geoms (n,), the types (ngeom,), sizes, positions and rotations of all geoms as in MuJoCo, the frame's origin
     (3,) and axes (3, 3) as columns, and the box (2, 3), least and greatest coordinates in that frame [m].
     """
-    return compile_cached(_extend_box, Path(__file__))
-
-
-def _extend_box(
-    geoms: Array, types: Array, sizes: Array, positions: Array, rotations: Array, origin: Array, axes: Array, box: Array
-) -> None:
     for geom in geoms:
         for axis in range(3):
             u, v, w = axes[0, axis], axes[1, axis], axes[2, axis]
@@ -60,17 +54,13 @@ def _extend_box(
             box[1, axis] = max(box[1, axis], at + far)
 
 
-@cache
-def any_within_distance() -> Callable[[Array, Array, Array, Array, Array, float], bool]:
-    """Returns the function that checks whether the box of any of some geoms is within a distance of a point.
+@compiled_on_demand(Path(__file__))
+def any_within_distance(geoms: Array, boxes: Array, positions: Array, rotations: Array, point: Array, distance: float) -> bool:
+    """Checks whether the box of any of some geoms is within a distance of a point.
 
     Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
     and the distance [m].
     """
-    return compile_cached(_any_within_distance, Path(__file__))
-
-
-def _any_within_distance(geoms: Array, boxes: Array, positions: Array, rotations: Array, point: Array, distance: float) -> bool:
     for geom in geoms:
         x, y, z = point[0] - positions[geom, 0], point[1] - positions[geom, 1], point[2] - positions[geom, 2]
         gap = 0.0
@@ -84,18 +74,14 @@ def _any_within_distance(geoms: Array, boxes: Array, positions: Array, rotations
     return False
 
 
-@cache
-def fastest() -> Callable[[Array, Array, Array, float], float]:
-    """Returns the function that computes an upper bound of the speed of any point of some bodies [m/s].
+@compiled_on_demand(Path(__file__))
+def fastest(reaches: Array, speeds: Array, together: Array, held: float) -> float:
+    """Computes an upper bound of the speed of any point of some bodies [m/s].
 
     Its arguments are: by moving part and degree of freedom (n, nv) the greatest way of its farthest point per unit [m]; the speeds (nv,);
     by degree of freedom (nv,), how many consecutive ones, from it on, form one velocity vector: 1 for a single one, 0 for later members;
     and the extent of held objects beyond the hands [m].
     """
-    return compile_cached(_fastest, Path(__file__))
-
-
-def _fastest(reaches: Array, speeds: Array, together: Array, held: float) -> float:
     most = 0.0
     for part in range(reaches.shape[0]):
         farthest = 0.0
@@ -112,18 +98,8 @@ def _fastest(reaches: Array, speeds: Array, together: Array, held: float) -> flo
     return most
 
 
-@cache
-def compute_deviations() -> Callable[..., bool]:
-    """Returns the function that compares degrees of freedom (n,) with what is commanded, and returns whether any needs a correction.
-
-    Its arguments are: their indices in `qpos`, `qvel` and `ctrl`; these three; the number of rows of the base, and cosine and sine of
-    its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if
-    no joint moves [s]; the slight deviations of place and speed; and an array (3, n) for the results, see `ActuatedDofs.deviations`.
-    """
-    return compile_cached(_compute_deviations, Path(__file__))
-
-
-def _compute_deviations(
+@compiled_on_demand(Path(__file__))
+def compute_deviations(
     q: Array,
     v: Array,
     c: Array,
@@ -142,6 +118,12 @@ def _compute_deviations(
     slight_speed: float,
     results: Array,
 ) -> bool:
+    """Compares degrees of freedom (n,) with what is commanded, and returns whether any needs a correction.
+
+    Its arguments are: their indices in `qpos`, `qvel` and `ctrl`; these three; the number of rows of the base, and cosine and sine of
+    its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if
+    no joint moves [s]; the slight deviations of place and speed; and an array (3, n) for the results, see `ActuatedDofs.deviations`.
+    """
     ways, off, wanted = results[0], results[1], results[2]
     found = False
     for row in range(len(q)):
@@ -160,18 +142,8 @@ def _compute_deviations(
     return found
 
 
-@cache
-def apply_corrections() -> Callable[..., None]:
-    """Returns the function that sets speeds and controls of degrees of freedom (n,) so that they return to what is commanded.
-
-    Its arguments are: their indices in `qvel` and `ctrl`; these two; the number of rows of the base, and cosine and sine of its heading;
-    the ways back, along the world's axes, NaN for what moves; the speeds to keep of what moves; the time constant [s] and the greatest
-    speed of corrections; the difference from which a speed is set at once; and those which only their servos change.
-    """
-    return compile_cached(_apply_corrections, Path(__file__))
-
-
-def _apply_corrections(
+@compiled_on_demand(Path(__file__))
+def apply_corrections(
     v: Array,
     c: Array,
     qvel: Array,
@@ -186,6 +158,12 @@ def _apply_corrections(
     slight_speed: float,
     servos_only: Array,
 ) -> None:
+    """Sets speeds and controls of degrees of freedom (n,) so that they return to what is commanded.
+
+    Its arguments are: their indices in `qvel` and `ctrl`; these two; the number of rows of the base, and cosine and sine of its heading;
+    the ways back, along the world's axes, NaN for what moves; the speeds to keep of what moves; the time constant [s] and the greatest
+    speed of corrections; the difference from which a speed is set at once; and those which only their servos change.
+    """
     n = len(v)
     for row in range(n):
         if not math.isnan(ways[row]):
@@ -219,21 +197,8 @@ ROLES = {"thigh_yaw": 1, "thigh_pitch": 2, "thigh_roll": 3, "upper_arm_pitch": 4
 """How the pattern of a stride becomes the movement of a joint; the pattern itself for all others, role 0."""
 
 
-@cache
-def stride_changes() -> Callable[..., float]:
-    """Returns the function that computes by how much gait moves its joints in a tick.
-
-    Its arguments are: the pattern of a stride (phases, columns) [rad] [m] and its phase, from 0 to 1; how far the body is to the left [m];
-    the size of the movements, 0 to 1; the angle by which the thighs turn towards the walking direction, and the angle of their swing
-    relative to that [rad]; the factor of the arms' swing, 0 to 1; (n,) the joints' columns; the role of each column; (n,) the joints' rows;
-    the places held in each row, NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick
-    [s]; (n,) what was added to each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It
-    returns the greatest wanted change.
-    """
-    return compile_cached(_stride_changes, Path(__file__))
-
-
-def _stride_changes(
+@compiled_on_demand(Path(__file__))
+def stride_changes(
     pattern: Array,
     phase: float,
     wander: float,
@@ -250,6 +215,15 @@ def _stride_changes(
     added: Array,
     changes: Array,
 ) -> float:
+    """Computes by how much gait moves its joints in a tick.
+
+    Its arguments are: the pattern of a stride (phases, columns) [rad] [m] and its phase, from 0 to 1; how far the body is to the left [m];
+    the size of the movements, 0 to 1; the angle by which the thighs turn towards the walking direction, and the angle of their swing
+    relative to that [rad]; the factor of the arms' swing, 0 to 1; (n,) the joints' columns; the role of each column; (n,) the joints' rows;
+    the places held in each row, NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick
+    [s]; (n,) what was added to each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It
+    returns the greatest wanted change.
+    """
     phases = len(pattern)
     at = phase * phases
     first, part = int(at) % phases, at - math.floor(at)
@@ -281,13 +255,8 @@ def _stride_changes(
     return greatest
 
 
-@cache
-def shift_held() -> Callable[..., bool]:
-    """Returns the function that shifts held places, and commands the speeds that reach them; see `ActuatedDofs.shift_held`."""
-    return compile_cached(_shift_held, Path(__file__))
-
-
-def _shift_held(
+@compiled_on_demand(Path(__file__))
+def shift_held(
     rows: Array,
     changes: Array,
     moves: bool,
@@ -300,6 +269,7 @@ def _shift_held(
     loose: Array,
     duration: float,
 ) -> bool:
+    """Shifts held places, and commands the speeds that reach them; see `ActuatedDofs.shift_held`."""
     changed = moves
     for number, row in enumerate(rows):
         if math.isnan(held[row]):

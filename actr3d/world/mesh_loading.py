@@ -224,11 +224,7 @@ def _pieces(scene: Any, name: str) -> list[Any]:
         if hasattr(each, "faces"):
             _check_numbers(np.asarray(each.vertices), np.asarray(each.faces), name)
     pieces = [piece for piece in scene.dump() if len(getattr(piece, "faces", ()))]
-    return sorted(pieces, key=_triangles, reverse=True)
-
-
-def _triangles(piece: Any) -> int:
-    return len(piece.faces)
+    return sorted(pieces, key=lambda piece: len(piece.faces), reverse=True)
 
 
 def _check_numbers(vertices: NDArray[Any], faces: NDArray[Any], name: str) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,15 +104,15 @@ def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:
         faces = np.ascontiguousarray(faces[:, ::-1])
         repairs.append("all its triangles faced inwards and are reversed")
     flat = _is_flat(vertices, name)
-    found = Surface(
-        vertices=vertices,
-        faces=faces,
+    used, faces = np.unique(faces, return_inverse=True)
+    return Surface(
+        vertices=vertices[used],
+        faces=faces.reshape(-1, 3),
         closed=closed and not flat,
         manifold=closed and not flat and bool((counts == 2).all()),
         flat=flat,
         repairs=tuple(repairs),
     )
-    return found if len(np.unique(faces)) == len(vertices) else replace(found, **_used(vertices, faces))
 
 
 def _merged(vertices: Vertices, faces: Faces) -> tuple[Vertices, Faces]:
@@ -226,8 +225,3 @@ def _is_flat(vertices: Vertices, name: str) -> bool:
     if widths[1] <= _FLAT * widths[0]:
         raise MeshError(f"'{name}': all its vertices lie in a line")
     return bool(len(widths) < 3 or widths[2] <= _FLAT * widths[0])
-
-
-def _used(vertices: Vertices, faces: Faces) -> dict[str, Any]:
-    used, faces = np.unique(faces, return_inverse=True)
-    return {"vertices": vertices[used], "faces": faces.reshape(-1, 3)}

@@ -104,7 +104,8 @@ class Objects:
         """
         number, physics = self._number(name, self.names, "move"), self._physics
         x, y, heading = checked_pose("move", x, y, heading)
-        moved = {number, *self._held(name)}
+        hands = self._bodies[name].hands.values() if name in self._bodies else ()
+        moved = {number, *(hand.held.object for hand in hands if hand.held is not None)}
         self._check_free(name, moved)
         before, depths = physics.integration_state(), self.depths(moved)
         held = self._bodies[name].state() if name in self._bodies else None
@@ -125,11 +126,6 @@ class Objects:
                 self._bodies[name].restore(held)
             physics.changed()
             raise WorldError(f"'{name}' cannot be put at ({x:g}, {y:g}) m: it would be inside {', '.join(map(repr, others))}; leave room")
-
-    def _held(self, name: str) -> set[int]:
-        """Returns the MuJoCo bodies that the hands of a body hold; none for another object."""
-        hands = self._bodies[name].hands.values() if name in self._bodies else ()
-        return {hand.held.object for hand in hands if hand.held is not None}
 
     def _check_free(self, name: str, moved: set[int]) -> None:
         """Raises an error if a hand of another body holds an object, or something that moves with it: the grip would throw it away.
@@ -178,7 +174,8 @@ class Objects:
         contacts, depths = physics.mj_data.contact, dict[str, Penetration]()
         pairs: list[list[int]] = contacts.geom.tolist()
         kinds = [[self._kind(geom) for geom in pair] for pair in pairs]
-        ends = [[self._root(geom) for geom in pair] for pair in pairs]
+        model = physics.mj_model
+        ends = [[int(model.body_rootid[model.geom_bodyid[geom]]) if geom >= 0 else -1 for geom in pair] for pair in pairs]
         pushes = [n for n, kind in enumerate(kinds) if others != "fixed" or others in kind]  # what can move gives way to what is fixed
         for n, distance in enumerate(contacts.dist.tolist()):
             mine = [end in roots for end in ends[n]]
@@ -206,10 +203,6 @@ class Objects:
             for side, root in enumerate(ends[one])
             for end in (0, 1)
         )
-
-    def _root(self, geom: int) -> int:
-        model = self._physics.mj_model
-        return int(model.body_rootid[model.geom_bodyid[geom]]) if geom >= 0 else -1
 
     def _moves(self, body: int) -> bool:
         return bool(self._physics.mj_model.body_treeid[body] >= 0)

@@ -182,12 +182,15 @@ class PostureHold:
 
     def before_step(self, duration: float) -> None:
         """Corrects deviations, for the next `duration` [s]."""
-        if self._moves:
-            self._follow_loop()
+        if self._moves and self._loop_moves():  # which moves standing joints too: they hold their present places
+            stand = self._dofs.looped & np.isfinite(self.held)
+            self.held[stand] = self._dofs.positions[stand]
         held = self.held if self._gait is None else self._walk(self._gait, duration)
         deviations = self._dofs.deviations(held, self.commanded, duration if self._moves else 0.0, SLIGHT_WAY, SLIGHT_SPEED)
         if deviations is None:
-            self._without_deviation()
+            self.calm, self._struck = not self._struck, False
+            if self.calm and self._pulls:
+                self._end_correction()
         else:
             self._correct(*deviations)
 
@@ -215,12 +218,6 @@ class PostureHold:
         """Records that a user pushes the body: as in contact, only the servos resist, with their limited force."""
         self._struck = True
 
-    def _without_deviation(self) -> None:
-        """Ends a correction, if there was one."""
-        self.calm, self._struck = not self._struck, False
-        if self.calm and self._pulls:
-            self._end_correction()
-
     def _correct(self, ways: Row, off: Row, wanted: Row) -> None:
         """Corrects deviations of position and speed; see `ActuatedDofs.deviations`."""
         dofs = self._dofs
@@ -232,7 +229,9 @@ class PostureHold:
             time, most = UNHINDERED
             dofs.apply_corrections(ways, wanted, time, most, SLIGHT_SPEED, loops=not self._loop_moves())
         else:
-            self._yield(ways)
+            # The place to which the base was pushed is accepted, except for slight deviations.
+            ways[: self._rows] = np.clip(ways[: self._rows], -YIELD, YIELD)
+            self.held[: self._rows] = dofs.positions[: self._rows] + ways[: self._rows]
             self._push(ways, wanted)
 
     def _push(self, ways: Row, wanted: Row) -> None:
@@ -243,17 +242,6 @@ class PostureHold:
         speeds, band = dofs.speeds, dofs.band
         more = np.clip(dofs.controls - speeds + back - speeds, -band, band)
         dofs.set_controls(np.where(np.isfinite(back), speeds + more, wanted))
-
-    def _yield(self, ways: Row) -> None:
-        """Accepts the place to which the base was pushed, except for slight deviations."""
-        ways[: self._rows] = np.clip(ways[: self._rows], -YIELD, YIELD)
-        self.held[: self._rows] = self._dofs.positions[: self._rows] + ways[: self._rows]
-
-    def _follow_loop(self) -> None:
-        """Holds standing joints at their present places, while another joint in the same loop moves and moves them too."""
-        if self._loop_moves():
-            stand = self._dofs.looped & np.isfinite(self.held)
-            self.held[stand] = self._dofs.positions[stand]
 
     def _loop_moves(self) -> bool:
         return self._dofs.loops and bool(np.isnan(self.held[self._dofs.looped]).any())

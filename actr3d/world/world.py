@@ -260,8 +260,8 @@ class World:
         Raises:
             WorldError: If there is no such aperture.
         """
-        aperture = self._aperture(name)
-        return aperture.width_of(tuple(self.mj_data.mocap_pos[self._mocap(f"{name}_left")]))
+        aperture, left = self._aperture(name), int(self.mj_model.body(f"{name}_left").id)
+        return aperture.width_of(tuple(self.mj_data.mocap_pos[self.mj_model.body_mocapid[left]]))
 
     def set_aperture_width(self, width: float, name: str = "aperture") -> None:
         """Sets the free width of an aperture [m] immediately, unless an object would be inside its walls.
@@ -293,7 +293,3 @@ class World:
         if not isinstance(name, str) or name not in self._apertures:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"no aperture '{name}' in this scene{did_you_mean(str(name), self._apertures)}")
         return self._apertures[name]
-
-    def _mocap(self, name: str) -> int:
-        body = self.mj_model.body(name)
-        return int(self.mj_model.body_mocapid[int(body.id)])

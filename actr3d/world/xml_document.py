@@ -46,7 +46,7 @@ def read_document(folder: AssetFolder, name: str) -> Element:
         WorldError: If XML is not well formed, has a document type (entities), is too large or deep, includes itself, or
             a file cannot be read; with file and line.
     """
-    root = _parsed(folder.read(name), name)
+    root = _XmlReader(name).read(folder.read(name))
     _expand(root, folder, (name,), [0])
     return root
 
@@ -69,10 +69,10 @@ class _XmlReader:
         self._count = 0
         self._parser = expat.ParserCreate()
         self._parser.StartElementHandler = self._start
-        self._parser.EndElementHandler = self._end
+        self._parser.EndElementHandler = lambda _: self.open.pop()
         self._parser.StartDoctypeDeclHandler = self._doctype
 
-    def read(self, content: bytes) -> None:
+    def read(self, content: bytes) -> Element:
         try:
             self._parser.Parse(content, True)
         except expat.ExpatError as error:
@@ -80,6 +80,8 @@ class _XmlReader:
             raise WorldError(f"{self._name}, line {error.lineno}: {expat.ErrorString(error.code)}{still}") from error
         except (LookupError, ValueError) as error:  # of an encoding that Python does not know, or expat cannot use
             raise WorldError(f"{self._name}, line 1: {error}; write it in UTF-8") from error
+        assert self.root is not None  # expat has found a document
+        return self.root
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         element = Element(tag=tag, attributes=attributes, where=f"{self._name}, line {self._parser.CurrentLineNumber}")
@@ -93,19 +95,9 @@ class _XmlReader:
             self.root = element
         self.open.append(element)
 
-    def _end(self, tag: str) -> None:
-        self.open.pop()
-
     def _doctype(self, *_: object) -> None:
         line = self._parser.CurrentLineNumber
         raise WorldError(f"{self._name}, line {line}: <!DOCTYPE> is refused: entities can grow without bounds, and MuJoCo has none")
-
-
-def _parsed(content: bytes, name: str) -> Element:
-    reader = _XmlReader(name)
-    reader.read(content)
-    assert reader.root is not None  # expat has found a document
-    return reader.root
 
 
 def _expand(element: Element, folder: AssetFolder, inside: tuple[str, ...], count: list[int]) -> None:
@@ -132,7 +124,7 @@ def _included(element: Element, folder: AssetFolder, inside: tuple[str, ...], co
     name = next((place for place in places if folder.has(place)), places[0])
     if name in inside:
         raise WorldError(f"{element.where}: {' includes '.join((*inside[inside.index(name) :], name))}, without end")
-    root = _parsed(folder.read(name, element.where), name)
+    root = _XmlReader(name).read(folder.read(name, element.where))
     _expand(root, folder, (*inside, name), count)
     return root
 

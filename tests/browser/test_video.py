@@ -41,6 +41,32 @@ DECODED = """async ([video, picture, count]) => {
 """Compares each picture of a video with a PNG: how far the colours are off on average."""
 
 
+@pytest.mark.scene
+def test_a_video_of_two_pictures_is_made(pages: Callable[..., Page], users: Users, tmp_path: Path) -> None:
+    page = pages(width=560, height=400)
+    for count in range(1, 5):
+        page.click("#step")
+        shows(page, "#time", rf"t = 0\.0{count} s")
+    page.get_by_role("button", name="Make a video of the 3D view").click()
+    dialog = page.get_by_role("dialog", name="Video of the 3D view")
+    expect(dialog).to_contain_text("2 pictures, 0.07 s of video")
+    with page.expect_download() as download:
+        dialog.get_by_role("button", name="Make the video").click()
+    assert re.fullmatch(r"doorway_seed_\d+_0\.00_s_to_0\.04_s\.webm", download.value.suggested_filename)
+    download.value.save_as(tmp_path / "video.webm")
+    video = (tmp_path / "video.webm").read_bytes()
+    assert video.startswith(b"\x1a\x45\xdf\xa3")  # a file of Matroska, which WebM is
+    decoded = """async (video) => {
+        const player = Object.assign(document.createElement("video"), { src: video, muted: true });
+        await new Promise((onloadeddata, onerror) => Object.assign(player, { onloadeddata, onerror }));
+        return [player.duration, player.videoWidth > 100, player.videoHeight > 100];
+    }"""
+    player = users.new(scene=False)
+    player.goto("about:blank")
+    found = player.evaluate(decoded, f"data:video/webm;base64,{b64encode(video).decode()}")
+    assert found == [pytest.approx(2 / 30, abs=0.001), True, True]
+
+
 @pytest.mark.slow
 @pytest.mark.scene
 def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[..., Page], users: Users, tmp_path: Path) -> None:

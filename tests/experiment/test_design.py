@@ -453,7 +453,7 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
         ),
         (
             "from actr3d.experiment import *\n@design\ndef a(): return Design()\nexit()\n",
-            r"d\.py: must not end the program when it is loaded \(it ended with SystemExit\(None\)\)",
+            r"d\.py:4: must not end the program when it is loaded \(it ended with SystemExit\(None\)\)",
         ),
         (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'], derive=lambda _: exit(3))\n",
@@ -463,6 +463,11 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
             "n = 1\nm = n\nfrom actr3d.experiment import *\nfrom random import random\n@design\ndef a():\n"
             "  return Design(measures=['m'],\n    factors={'n': [random(), random()]})\n",
             r"d\.py:8: a\(\) must return the same design each time \(different: n\); draw with a seed",
+        ),
+        (
+            "n = 1\nfrom actr3d.experiment import *\nfrom random import random\n@design\ndef a():\n"
+            "  return Design(\n    measures=[Measured(name='n', meaning=f'{random()}')])\n",
+            r"d\.py:7: a\(\) must return the same design each time \(different: Design\.measures\); draw with a seed",
         ),
         ("from actr3d.experiment import *\n@design\ndef a(): return 3\n", r"d\.py:3: a\(\) must return a Design \(returned 3\)"),
         (
@@ -487,6 +492,14 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
             r"d\.py:5: Design\.measures: 'n' is there twice",
         ),
         (
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(factors={'n': [1, 2]},\n    measures=['n_'])\n",
+            r"d\.py:6: Design: 'n_' is what reports call the factor 'n'; rename one of them",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n  return Design(factors={'n': [1],\n    'n_': [1]})\n",
+            r"d\.py:5: Design: 'n_' is what reports call the factor 'n'; rename one of them",
+        ),
+        (
             "from actr3d.experiment import *\ntime = 1\n@design\ndef a():\n  return Design(\n    measures='time')\n",
             r"d\.py:6: Design\.measures: must be a list of names \(got 'time'\)",
         ),
@@ -505,6 +518,13 @@ def test_files_without_a_valid_design_are_refused(tmp_path: Path, text: str, say
     path.write_text(text)
     with pytest.raises(ExperimentError, match=says):
         specify(str(path))
+
+
+def test_a_design_that_is_named_is_there_once(tmp_path: Path) -> None:
+    path = tmp_path / "d.py"
+    path.write_text("from actr3d.experiment import *\n@design\ndef a(): return Design()\n@design\ndef a(): return Design()\n")
+    with pytest.raises(ExperimentError, match=r"d\.py: defines the design 'a' 2 times; give each another name"):
+        specify(f"{path}:a")
 
 
 def test_a_syntax_error_in_the_model_is_named_with_file_and_line(tmp_path: Path) -> None:

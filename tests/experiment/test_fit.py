@@ -119,11 +119,11 @@ def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, cl
     fit = fit_of(tmp_path, client, "slope=0..3")
     path = tmp_path / "line.py"
     others = held_out(f"{path}:line", (1, 2, 3)) | held_out(f"{path}:steeper", (10, 20, 30))
-    one, other = fit.run(2, hold_out=others).held_out.values()
+    one, other = fit.run(2, held_out=others).held_out.values()
     assert [row["x"] for row in one.rows] == [1, 2, 3]
     assert [row["x"] for row in other.rows] == [10, 20, 30]
     again = fit_of(tmp_path, client, "slope=0..3")
-    better = again.run(8, hold_out=others)
+    better = again.run(8, held_out=others)
     assert better.parameters[0].value != fit.run(2).parameters[0].value
     assert [found.rmse for found in better.held_out.values()] != [one.rmse, other.rmse]
 
@@ -176,7 +176,7 @@ def test_a_held_out_design_may_have_another_measure_than_the_fit(
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
     steeper = f"{tmp_path / 'line.py'}:steeper"
     fit = fit_of(tmp_path, client, "slope=0..3", values={"noise": 0, "offset": 7}, participants=1, trials=1)
-    result = fit.run(1, hold_out=held_out(steeper, (10, 20, 30)))
+    result = fit.run(1, held_out=held_out(steeper, (10, 20, 30)))
     slope = result.parameters[0].value
     assert [row["model"] for row in result.held_out[steeper].rows] == [pytest.approx(slope * x + 7) for x in (10, 20, 30)]
     (folder,) = (tmp_path / "fit").glob("hold-out *")
@@ -188,17 +188,17 @@ def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything
     fit = fit_of(tmp_path, None, "slope=0..3", values={"x": [1, 2, 3, 4, 5]})
     says = r"--hold-out .*:steeper: varies x \(10, 20, 30\), which --set x would replace; leave out one"
     with pytest.raises(DesignError, match=says):
-        fit.run(1, hold_out=held_out(f"{tmp_path / 'line.py'}:steeper", (10, 20, 30)))
+        fit.run(1, held_out=held_out(f"{tmp_path / 'line.py'}:steeper", (10, 20, 30)))
     fit = fit_of(tmp_path, None, "slope=0..3", values={"noise": 0})
     (tmp_path / "other.py").write_text(LINE.replace("noise = 0.1", "").replace("noise *", "0.1 *"), encoding="utf-8")
     with pytest.raises(DesignError, match=r"--hold-out .*other.py:steeper: --set noise: Design: the model has no parameter 'noise'"):
-        fit.run(1, hold_out=held_out(f"{tmp_path / 'other.py'}:steeper", (10, 20, 30)))
+        fit.run(1, held_out=held_out(f"{tmp_path / 'other.py'}:steeper", (10, 20, 30)))
 
 
 def test_held_out_means_that_are_those_of_the_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
     line = f"{tmp_path / 'line.py'}:line"
     with pytest.raises(ExperimentError, match=r"--hold-out .*:line: its means are those of the fit; name a design, or data, that are not"):
-        fit_of(tmp_path, None).run(1, hold_out=held_out(line, (5, 4, 3, 2, 1)))
+        fit_of(tmp_path, None).run(1, held_out=held_out(line, (5, 4, 3, 2, 1)))
 
 
 @pytest.mark.parametrize(
@@ -217,7 +217,7 @@ def test_ablated_models_that_cannot_be_are_refused_before_anything_runs(tmp_path
 def test_held_out_designs_without_any_condition_of_their_target_are_refused_before_anything_runs(tmp_path: Path) -> None:
     says = r"--hold-out .*:steeper: the target has no mean for x 10, 20, 30; it has: 1, 2"
     with pytest.raises(ExperimentError, match=says):
-        fit_of(tmp_path, None).run(1, hold_out=held_out(f"{tmp_path / 'line.py'}:steeper", (1, 2)))
+        fit_of(tmp_path, None).run(1, held_out=held_out(f"{tmp_path / 'line.py'}:steeper", (1, 2)))
 
 
 def test_an_ablation_reads_values_as_other_options_do(tmp_path: Path, client: Any) -> None:
@@ -239,7 +239,7 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
 def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
     others = held_out(f"{tmp_path / 'line.py'}:steeper", (10, 20, 30))
-    result = fit.run(STARTING + 6, hold_out=others, ablate=["slope=0"], recover=2)
+    result = fit.run(STARTING + 6, held_out=others, ablate=["slope=0"], recover=2)
     slope, offset = result.parameters
     assert slope.value == pytest.approx(1.4, abs=0.15)
     assert offset.value == pytest.approx(1.0, abs=0.4)
@@ -301,6 +301,16 @@ def line():
     people = Group(participants=4, parameters={"own": Normal(mean=0, sd=0.5, low=-2, high=2)})
     return Design(factors={"x": [1, 2, 3, 4, 5]}, groups={"all": people}, trials=1, measures=["y"])
 """
+
+
+def test_a_fit_of_means_that_jump_is_not_confirmed(tmp_path: Path, client: Any) -> None:
+    line = JUMP.replace("sd=0.5", "sd=0").replace("participants=4", "participants=1")
+    result = fit_of(tmp_path, client, "slope=0..3", line=line).run(STARTING)
+    assert not result.is_confirmed
+    assert result.predicted_worst is not None
+    assert result.predicted_worst["slope"] == pytest.approx(1.37, abs=0.4)
+    assert (result.parameters[0].low, result.parameters[0].high) == (None, None)
+    assert rmse_of(result.fit) <= min(rmse for one in result.tried if (rmse := one.rmse) is not None)
 
 
 @pytest.mark.slow
@@ -441,7 +451,7 @@ def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client:
     line = FAILING.replace("FAILS", "x == 5 and abs(slope - 1.35) < 0.1 and self.random.random() < 0.6")
     steeper = f"{tmp_path / 'line.py'}:steeper"
     fit = fit_of(tmp_path, client, "slope=0..3", line=line, values={"offset": 1})
-    result = fit.run(STARTING, hold_out=held_out(steeper, (10, 20, 30)), ablate=["slope=1.4"])
+    result = fit.run(STARTING, held_out=held_out(steeper, (10, 20, 30)), ablate=["slope=1.4"])
     failing = [one for one in result.tried if one.failed]
     assert [(one.values["slope"], one.rmse, one.trials) for one in failing] == [(1.35, None, 20)]
     assert 0 < failing[0].failed < 4
@@ -452,6 +462,14 @@ def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client:
     changed = result.ablated["slope=1.4"]
     assert (changed.cells, changed.missing, changed.trials) == (4, 1, 20)
     assert [row["x"] for row in changed.rows] == [1, 2, 3, 4]
+    assert 0 < changed.failed < 4
+
+
+def test_a_condition_in_which_some_trials_failed_is_missing(tmp_path: Path, client: Any) -> None:
+    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "offset == 7 and x == 3 and self.random.random() < 0.5"))
+    changed = fit.run(1, ablate=["offset=7"]).ablated["offset=7"]
+    assert [row["x"] for row in changed.rows] == [1, 2, 4, 5]
+    assert (changed.cells, changed.missing, changed.trials) == (4, 1, 20)
     assert 0 < changed.failed < 4
 
 

@@ -272,14 +272,12 @@ def test_measures_that_cannot_be_kept_are_failures(tmp_path: Path, end: str, say
 LISTS = """
 from actr3d.experiment import Measured
 
-mine = counting
-
 
 @design
-def counting():
+def with_lists():
     from dataclasses import replace
     measures = ["rt", Measured(name="share", unit="%", meaning="How many.", over="block")]
-    return replace(mine(), measures=measures)
+    return replace(counting(), measures=measures)
 """
 
 
@@ -287,7 +285,7 @@ def test_a_list_has_a_column_for_each_number(tmp_path: Path) -> None:
     model = f"{COUNTER}import numpy as np\nshare = [0.5, None, n] if n < 5 else np.array([1.0, 2.0])\n"
     path = write_experiment(tmp_path, model=model, factors='{"n": [1, 5]}', participants=1, trials=1)
     path.write_text(path.read_text() + LISTS)
-    experiment = specify(f"{path}:counting")
+    experiment = specify(f"{path}:with_lists")
     text, process = experiment.specification.to_json(), TrialProcess()
     try:
         rows = [{**trial.columns, **process.run(text, trial.number, 60)} for trial in experiment.design.table()]
@@ -304,7 +302,7 @@ def test_a_list_has_a_column_for_each_number(tmp_path: Path) -> None:
 def test_what_must_be_a_list_and_is_none_is_a_failure(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, model=f"{COUNTER}share = 1\n", participants=1, trials=1, factors="{}")
     path.write_text(path.read_text() + LISTS)
-    (row,) = rows_of(f"{path}:counting")
+    (row,) = rows_of(f"{path}:with_lists")
     assert row["error"].endswith("measure 'share': must be a list, with a value for each block (got 1)")
 
 

@@ -14,10 +14,9 @@ from actr3d.trace import TraceEvent
 from tests.helpers.sessions import Desk, Talk
 from tests.workbench.test_recorded_runs import recording
 from workbench.chunk_curves import SUFFIX
-from workbench.event_curves import EventCurves
+from workbench.event_curves import EventCurves, part_name
 from workbench.exports import curves_of
 from workbench.page_files import static
-from workbench.part_names import part_name
 
 COUNTS = """
 from actr3d.actr import *

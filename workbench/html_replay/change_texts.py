@@ -8,14 +8,16 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, cast
 
+import numpy as np
 from mujoco import MjModel
 
 from actr3d.change import CHANGES
 from actr3d.simulation import Command
 from actr3d.trace import TraceEvent
+from actr3d.values import to_json
 from workbench.live_parameters import parameter_set_by
 from workbench.loader import ModelListing
 
@@ -27,21 +29,10 @@ class ChangeTexts:
         listing: The model, as far as its text says what it is.
         values: The parameters at the start of the run, by name.
         widths: The widths of apertures at the start [m], by the number of the simulation and the name.
-        value_text: Returns the text of a value.
-        chunk_text: Returns the text of a chunk.
     """
 
-    def __init__(
-        self,
-        listing: ModelListing,
-        values: Mapping[str, Any],
-        widths: Mapping[tuple[int, str], float],
-        *,
-        value_text: Callable[[Any], str],
-        chunk_text: Callable[[Any], str],
-    ) -> None:
+    def __init__(self, listing: ModelListing, values: Mapping[str, Any], widths: Mapping[tuple[int, str], float]) -> None:
         self._listing = listing
-        self._value, self._chunk = value_text, chunk_text
         self._known: dict[tuple[Any, ...], str] = {("parameter", 1, name): value_text(value) for name, value in values.items()}
         self._known |= {("aperture", *key): _centimetres(width) for key, width in widths.items()}
         self._buffers: dict[str, list[str]] = {}
@@ -50,9 +41,8 @@ class ChangeTexts:
     def take(self, event: TraceEvent) -> None:
         """Notes the chunk of a buffer."""
         if event.kind == "buffer":
-            chunk = event.data.get("chunk")
-            now = "empty" if chunk is None else self._chunk(chunk)
-            self._buffers[event.source] = [self._buffers.get(event.source, ["", "empty"])[-1], now]
+            before = self._buffers.get(event.source, ["", "empty"])[-1]
+            self._buffers[event.source] = [before, chunk_text(event.data.get("chunk"))]
 
     def text(self, event: TraceEvent) -> str:
         """Returns a command as text."""
@@ -62,12 +52,12 @@ class ChangeTexts:
             found = parameter_set_by(self._listing.parameters, one.word, one.values, one.named, one.body)
             if found is not None:
                 parameter, value = found
-                return f"{parameter.name} {self._changed(('parameter', event.run, parameter.name), self._value(value), parameter.unit)}"
+                return f"{parameter.name} {self._changed(('parameter', event.run, parameter.name), value_text(value), parameter.unit)}"
         change = None if one.body else CHANGES.get(one.word)
         arguments = None if change is None else _arguments(change, one)
         if change is None or arguments is None:
-            named = [f"{name}: {self._value(value)}" for name, value in one.named.items()]
-            return " ".join([one.word, *([one.body] if one.body else []), *map(self._value, one.values), *named])
+            named = [f"{name}: {value_text(value)}" for name, value in one.named.items()]
+            return " ".join([one.word, *([one.body] if one.body else []), *map(value_text, one.values), *named])
         title = one.word.replace("_", " ")
         if one.word == "aperture" and isinstance(arguments["width"], int | float):
             name = arguments["name"]
@@ -75,13 +65,13 @@ class ChangeTexts:
             return f"aperture {what}" if name == "aperture" else f"aperture {name} {what}"
         if change.of == "parameter":
             path = arguments["path"]
-            return f"{title} {path} {self._changed(('path', path), self._value(arguments['value']))}"
+            return f"{title} {path} {self._changed(('path', path), value_text(arguments['value']))}"
         if change.of == "buffer":
             before = self._buffers.get(arguments["buffer"], ["empty"])[0]
             return f"{title} {arguments['buffer']} {before} -> {arguments.get('chunk', 'empty')}"
         if one.word == "move":
-            return f"{title} {arguments['object']} to {self._place(**arguments)}"
-        filled = re.sub(r"\{(\w+)\}", lambda found: self._value(arguments.get(found[1])), change.text)
+            return f"{title} {arguments['object']} to {_place(**arguments)}"
+        filled = re.sub(r"\{(\w+)\}", lambda found: value_text(arguments.get(found[1])), change.text)
         return f"{title} {filled}"
 
     def _changed(self, key: tuple[Any, ...], text: str, unit: str | None = None) -> str:
@@ -89,9 +79,20 @@ class ChangeTexts:
         self._known[key] = text
         return f"{'' if before is None else f'{before} -> '}{text}{f' {unit}' if unit else ''}"
 
-    def _place(self, *, x: float, y: float, heading: float | None, **_: Any) -> str:
-        turned = "" if heading is None else f", {math.degrees(heading):.0f}°"
-        return f"({self._value(x)}, {self._value(y)}) m{turned}"
+
+def chunk_text(slots: Any) -> str:
+    """Returns a chunk in the notation of models, with its values as the trace shows them."""
+    if not isinstance(slots, Mapping):
+        return "empty" if slots is None else str(slots)
+    named = cast("Mapping[str, Any]", slots)
+    return " ".join(value_text(value) if name.isdecimal() else f"{name}:{value_text(value)}" for name, value in named.items())
+
+
+def value_text(value: Any) -> str:
+    """Returns a value as the trace shows it: with at most four decimals."""
+    if isinstance(value, float):
+        return np.format_float_positional(value, 4, trim="-")
+    return "none" if value is None else value if isinstance(value, str) else to_json(value)
 
 
 def widths_in(model: MjModel, walls: Mapping[str, Any]) -> Iterable[tuple[str, float]]:
@@ -116,6 +117,11 @@ def _arguments(change: type[Any], one: Command) -> dict[str, Any] | None:
         return None
     bound.apply_defaults()
     return bound.arguments
+
+
+def _place(*, x: float, y: float, heading: float | None, **_: Any) -> str:
+    turned = "" if heading is None else f", {math.degrees(heading):.0f}°"
+    return f"({value_text(x)}, {value_text(y)}) m{turned}"
 
 
 def _centimetres(width: float) -> str:

@@ -7,27 +7,25 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import msgspec
-import numpy as np
 
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path
 from actr3d.trace_kinds import GROUPS, KINDS
-from actr3d.values import to_json
 from workbench.curves import stride
 from workbench.files import ModelFolder
 from workbench.geom_colours import dress
-from workbench.html_replay.change_texts import ChangeTexts, widths_in
-from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
+from workbench.html_replay.change_texts import ChangeTexts, chunk_text, value_text, widths_in
+from workbench.html_replay.shapes import Shapes, packed, poses_of
 from workbench.loader import listing_of
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
 from workbench.run_facts import seed_of, source_of
 from workbench.scene_colours import palette
-from workbench.scene_framing import SceneFraming
+from workbench.scene_framing import SceneFraming, grounds_of
 from workbench.shipped import static
 from workbench.time_text import time_text
 
@@ -66,14 +64,10 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
     # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
-    page = (folder / "page.html").read_text(encoding="utf-8")
-    parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": _read(folder, "style.css"), "SCRIPT": _scripts(folder)}
+    page, style = ((folder / name).read_text(encoding="utf-8") for name in ("page.html", "style.css"))
+    parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": style, "SCRIPT": _scripts(folder)}
     pieces = page.split("@@")
     to.write_text("".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces)), encoding="utf-8")
-
-
-def _read(folder: Path, name: str) -> str:
-    return (folder / name).read_text(encoding="utf-8")
 
 
 def _scripts(folder: Path) -> str:
@@ -107,7 +101,7 @@ def _changes(recorded: Recorded, simulations: Iterable[RecordedSimulation]) -> C
     listing = listing_of(source_of(facts))
     walls = [(one.number, one.mj_model, one.facts["world"].get("walls", {})) for one in simulations]
     widths = {(number, name): width for number, model, gaps in walls for name, width in widths_in(model, gaps)}
-    return ChangeTexts(listing, facts.get("parameters", {}), widths, value_text=_value, chunk_text=_chunk)
+    return ChangeTexts(listing, facts.get("parameters", {}), widths)
 
 
 def _events(recorded: Recorded, changes: ChangeTexts) -> tuple[dict[str, Any], Mapping[int, Iterable[str]]]:
@@ -136,40 +130,21 @@ def _kind(name: str) -> tuple[str, bool]:
 
 def _plain(values: Mapping[str, Any]) -> dict[str, str]:
     """Returns names and values as texts."""
-    return {str(name): _value(value) for name, value in values.items()}
+    return {str(name): value_text(value) for name, value in values.items()}
 
 
 def _text(event: TraceEvent, changes: ChangeTexts) -> str:
     """Returns the content of an event as one line."""
     data, kind = event.data, KINDS.get(event.kind)
     if kind is not None and kind.text:
-        text = re.sub(r"\{(\w+)\}", lambda found: _value(data.get(found[1])), kind.text)
+        text = re.sub(r"\{(\w+)\}", lambda found: value_text(data.get(found[1])), kind.text)
     elif event.kind in ("buffer", "add"):
-        text = _chunk(data.get("chunk"))
+        text = chunk_text(data.get("chunk"))
     elif event.kind == "command":
         text = changes.text(event)
     else:
-        text = "  ".join(f"{name}={_value(value)}" for name, value in data.items())
+        text = "  ".join(f"{name}={value_text(value)}" for name, value in data.items())
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
-
-
-def _chunk(slots: Any) -> str:
-    """Returns a chunk in the notation of models, with its values as the trace shows them."""
-    if not isinstance(slots, Mapping):
-        return "empty" if slots is None else str(slots)
-    named = cast("Mapping[str, Any]", slots)
-    return " ".join(_value(value) if name.isdecimal() else f"{name}:{_value(value)}" for name, value in named.items())
-
-
-def _value(value: Any) -> str:
-    """Returns a value as the trace shows it: with at most four decimals."""
-    if isinstance(value, float):
-        return np.format_float_positional(value, 4, trim="-")
-    return "none" if value is None else _word(value)
-
-
-def _word(value: Any) -> str:
-    return value if isinstance(value, str) else to_json(value)
 
 
 def _agent(event: TraceEvent) -> str:

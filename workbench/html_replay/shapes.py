@@ -37,9 +37,6 @@ def packed(numbers: Any, kind: str) -> str:
 class Shapes:
     """Collects what is drawn of a scene, one shape for each MuJoCo body, without planes.
 
-    Args:
-        model: The compiled scene.
-
     Raises:
         RecordingError: If the scene has too many triangles.
     """
@@ -113,14 +110,6 @@ def _height_field(model: MjModel, field: int) -> tuple[Any, Any]:
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     right, above, across = corner + 1, corner + columns, corner + columns + 1
     return places, np.concatenate((np.column_stack((corner, right, across)), np.column_stack((corner, across, above))))
-
-
-def grounds_of(model: MjModel) -> list[float]:
-    """Returns the heights of the planes of a scene [m]."""
-    plane = int(mjtGeom.mjGEOM_PLANE)
-    return sorted(
-        {float(model.geom_pos[geom, 2]) for geom in np.flatnonzero(model.geom_type == plane).tolist() if not model.geom_bodyid[geom]}
-    )
 
 
 def poses_of(model: MjModel, bodies: list[int], states: Iterable[bytes]) -> Any:

@@ -5,28 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import Protocol
 
-from workbench.language.answers import Completion, Hover, Item, Renaming, Signature
+from workbench.language.answers import Completion, Hover, Item, Signature
 from workbench.language.library_words import Word, answers_of, features_of, only_reads, scene_parts, words_for
 from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece
-
-
-class Attributes(Protocol):
-    """What Python knows of the attributes of an expression, such as `Agent.part`."""
-
-    def attributes(self, expression: str) -> list[tuple[str, str]]:
-        """Returns them, each with its documentation."""
-        ...
-
-    def parameters(self, expression: str) -> list[tuple[str, str]]:
-        """Returns the parameters of a call of the expression, each with its documentation."""
-        ...
-
-    def is_truth(self, expression: str) -> bool:
-        """Returns whether the expression is True or False."""
-        ...
-
+from workbench.language.python_answers import PythonExpressions
 
 OWN, KNOWN, OTHER = 3, 2, 0
 """The ranks of completions: used with the same part, given by the library, used with other parts."""
@@ -42,7 +25,7 @@ MAX_NAMED = 8
 # -- completion
 
 
-def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | None:
+def complete(model: ModelText, at: int, attributes: PythonExpressions) -> Completion | None:
     """Returns what may come at a position of a text of chunks or patterns; None if that is not the place."""
     text = model.text_at(at)
     if text is None:
@@ -73,7 +56,7 @@ def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | 
     return Completion(start=start, items=distinct([*([] if named else _words(model, text, place)), *slots, *([] if named else values)]))
 
 
-def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[list[Item], bool]:
+def complete_name(model: ModelText, at: int, attributes: PythonExpressions) -> tuple[list[Item], bool]:
     """Returns the slots, parts or parameters whose names may come at a position in code, and whether nothing else may.
 
     Args:
@@ -113,7 +96,7 @@ def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[li
     ], False
 
 
-def _conditions(model: ModelText, name: Name, attributes: Attributes | None = None) -> list[tuple[Word, dict[str, str]]]:
+def _conditions(model: ModelText, name: Name, attributes: PythonExpressions | None = None) -> list[tuple[Word, dict[str, str]]]:
     """Returns the features that the request around a name may search for, with the keyword arguments of each, such as `width=">0.5"`."""
     part = model.parts_of(name.agent).get(name.called[-2]) if name.called[-1:] == ("request",) and len(name.called) > 1 else None
     if part is None:
@@ -183,7 +166,7 @@ def _elsewhere(texts: Iterable[ChunkText], at: int) -> Iterator[ChunkText]:
     return (one for one in texts if not one.start <= at <= one.end)
 
 
-def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -> Iterator[Item]:
+def _slots(model: ModelText, text: ChunkText, at: int, attributes: PythonExpressions) -> Iterator[Item]:
     """Yields the slots that a text may name and does not name yet."""
     used = {slot.text for slot in text.slots if not slot.start <= at <= slot.end}
     own = model.chunks_of(text.part, text.agent)
@@ -192,10 +175,10 @@ def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -
     if part is not None and text.kind == "request" and features_of(part.kind) and "feature" not in used:
         yield Item(label="feature", type="property", detail="what to find", boost=KNOWN, apply="feature:")
         return
-    for word, texts in _answers(model, text, attributes):
+    for word in _answers(model, text, attributes):
         yield from (
             Item(label=name, type="property", detail=f"slot of {word.word}", boost=KNOWN, text=said, apply=f"{name}:")
-            for name, said in texts.items()
+            for name, said in word.slots.items()
             if name not in used
         )
     if part is not None and part.kind != "Buffer" and text.kind == "pattern":
@@ -208,8 +191,8 @@ def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -
                     yield Item(label=slot.text, type="property", detail=f"slot, {one.part}", boost=rank, apply=f"{slot.text}:")
 
 
-def _answers(model: ModelText, text: ChunkText, attributes: Attributes | None = None) -> Iterator[tuple[Word, dict[str, str]]]:
-    """Yields what the library puts into a buffer, or what a module searches for, with the slots; if the text names one, only that."""
+def _answers(model: ModelText, text: ChunkText, attributes: PythonExpressions | None = None) -> list[Word]:
+    """Returns what the library puts into a buffer, or what a module searches for; if the text names one, only that."""
     found: list[Word] = []
     for part in model.parts_of(text.agent).values():
         if text.part in part.given and text.kind == "pattern":
@@ -217,11 +200,10 @@ def _answers(model: ModelText, text: ChunkText, attributes: Attributes | None = 
         if text.part in part.given if text.kind == "pattern" else text.part == part.name:
             found += _features(model, part, attributes)
     named = {piece.text for piece in text.pieces}
-    for word in [word for word in found if word.word in named] or found:
-        yield word, word.slots
+    return [word for word in found if word.word in named] or found
 
 
-def _features(model: ModelText, part: Part, attributes: Attributes | None = None) -> Iterator[Word]:
+def _features(model: ModelText, part: Part, attributes: PythonExpressions | None = None) -> Iterator[Word]:
     """Yields the features that a module finds: the library's, and those that the text itself defines."""
     library = features_of(part.kind)
     for one in library:
@@ -232,14 +214,11 @@ def _features(model: ModelText, part: Part, attributes: Attributes | None = None
             yield Word(word=agent.name.lower(), text=f"{agent.name}, in this file", slots={"feature": "", **slots})
 
 
-def _words(model: ModelText, text: ChunkText, place: int) -> Iterator[Item]:
-    """Yields the words of the library that may begin a text."""
-    if place > 0:
-        return
-    if text.kind == "pattern":
-        parts = model.parts_of(text.agent).values()
-        for word in (word for one in parts if text.part in one.given for word in answers_of(one.kind)):
-            yield Item(label=word.word, type="function", detail="sensed", boost=OTHER, text=word.text)
+def _words(model: ModelText, text: ChunkText, place: int) -> list[Item]:
+    """Returns the words of the library that may begin a text."""
+    parts = model.parts_of(text.agent).values() if place == 0 and text.kind == "pattern" else ()
+    words = (word for one in parts if text.part in one.given for word in answers_of(one.kind))
+    return [Item(label=word.word, type="function", detail="sensed", boost=OTHER, text=word.text) for word in words]
 
 
 def _words_of_part(model: ModelText, text: ChunkText) -> list[Item]:
@@ -251,7 +230,7 @@ def _words_of_part(model: ModelText, text: ChunkText) -> list[Item]:
     return [Item(label=one.word, type="function", detail=f"({one.takes})" if one.takes else "", boost=OWN, text=one.text) for one in words]
 
 
-def _values(model: ModelText, text: ChunkText, slot: str, at: int, attributes: Attributes) -> Iterator[Item]:
+def _values(model: ModelText, text: ChunkText, slot: str, at: int, attributes: PythonExpressions) -> Iterator[Item]:
     """Yields the values that the text knows of a slot."""
     parts = model.parts_of(text.agent)
     part = parts.get(text.part)
@@ -323,7 +302,7 @@ def _document_in(model: ModelText, text: ChunkText, at: int) -> Hover | None:
 def _of_slot(model: ModelText, slot: str, text: ChunkText | None = None) -> str:
     lines: list[str] = []
     if text is not None:
-        lines += [f"{word.word}: {slots[slot]}" for word, slots in _answers(model, text) if slots.get(slot)]
+        lines += [f"{word.word}: {word.slots[slot]}" for word in _answers(model, text) if word.slots.get(slot)]
     uses = [one for one in model.texts if any(other.text == slot for other in one.slots)]
     modified = _modified(model, slot)
     places = {kind: [(one.start, one.method) for one in uses if one.kind == kind] for kind in ("pattern", "chunk", "request")}
@@ -350,14 +329,14 @@ def is_modified(name: Name) -> bool:
 
 def giver(model: ModelText, text: ChunkText, slot: str) -> str:
     """Returns what of the library gives a slot of a text its name; empty if nothing does."""
-    return next((word.word for word, slots in _answers(model, text) if slot in slots), "")
+    return next((word.word for word in _answers(model, text) if slot in word.slots), "")
 
 
 def _of_value(model: ModelText, text: ChunkText, piece: Piece) -> str:
     part = model.parts_of(text.agent).get(text.part)
     known = words_for(part.kind, "set" if text.kind == "chunk" else "request") if part is not None and text.kind != "pattern" else ()
     lines = [f"{one.word}({one.takes}): {one.text}" for one in known if one.word == piece.text]
-    lines += [f"{word.word}: {word.text}" for word, _ in _answers(model, text) if word.word == piece.text]
+    lines += [f"{word.word}: {word.text}" for word in _answers(model, text) if word.word == piece.text]
     where = f"in slot {piece.slot}" if not piece.slot.isdecimal() else f"word {int(piece.slot) + 1}"
     uses = [
         (one.start, one.method) for one in model.texts if any(other.text == piece.text and other.slot == piece.slot for other in one.pieces)
@@ -408,7 +387,7 @@ def _listed(what: str, names: Iterable[str]) -> str:
     return f"{what} {', '.join(distinct[:MAX_NAMED])}{more}" if distinct else ""
 
 
-# -- definition and renaming
+# -- definition
 
 
 def part_of(model: ModelText, name: Name) -> Part | None:
@@ -438,55 +417,33 @@ def _is_variable_of(model: ModelText, method: str, name: str) -> bool:
 
 def define(model: ModelText, at: int) -> int | None:
     """Returns where a part, a variable or a slot is first written; None if there is none at the position."""
-    renaming = find_uses(model, at)
-    if renaming is None:
-        return None
-    if renaming.what == "part":
-        text, name = model.text_at(at), model.name_at(at)
-        part = model.parts_of((text or name).agent).get(renaming.name) if text or name else None  # type: ignore[union-attr]
-        return None if part is None else part.start
-    if renaming.what == "slot":
-        given = (slot.start for one in model.texts if one.kind == "chunk" for slot in one.slots if slot.text == renaming.name)
-        return next(given, renaming.starts[0])
-    return renaming.starts[0]
-
-
-def find_uses(model: ModelText, at: int) -> Renaming | None:
-    """Returns all places of the slot, variable or part at a position; None if there is none."""
     text = model.text_at(at)
     if text is not None:
-        for slot in text.slots:
-            if slot.start <= at <= slot.end:
-                return Renaming(name=slot.text, what="slot", starts=_uses_of_slot(model, slot.text))
-        for piece in text.pieces:
-            if piece.is_variable and piece.start - len(piece.sign) <= at <= piece.end:
-                return Renaming(name=piece.text, what="variable", starts=_uses_of_variable(model, text.method, piece.text))
-        return None
+        slot = next((one.text for one in text.slots if one.start <= at <= one.end), None)
+        if slot is not None:
+            return _first_of_slot(model, slot)
+        variables = (one for one in text.pieces if one.is_variable)
+        variable = next((one.text for one in variables if one.start - len(one.sign) <= at <= one.end), None)
+        return None if variable is None else _first_of_variable(model, text.method, variable)
     name = model.name_at(at)
     if name is None:
         return None
     if is_variable(model, name):
-        return Renaming(name=name.text, what="variable", starts=_uses_of_variable(model, name.method, name.text))
+        return _first_of_variable(model, name.method, name.text)
     part = part_of(model, name)
-    if part is not None:
-        return Renaming(name=name.text, what="part", starts=_uses_of_part(model, part))
-    if is_modified(name):
-        return Renaming(name=name.text, what="slot", starts=_uses_of_slot(model, name.text))
-    return None
+    return part.start if part is not None else _first_of_slot(model, name.text) if is_modified(name) else None
 
 
-def _uses_of_slot(model: ModelText, slot: str) -> list[int]:
-    named = [one.start for text in model.texts for one in text.slots if one.text == slot]
-    given = [one.start for one in model.names if one.text == slot and is_modified(one)]
+def _first_of_slot(model: ModelText, slot: str) -> int:
+    """Returns where a slot is first set by a text of a chunk, or else where it is first named; it is named somewhere."""
+    named = [(one.start, text.kind) for text in model.texts for one in text.slots if one.text == slot]
+    modified = [one.start for one in model.names if one.text == slot and is_modified(one)]
     read = [found.start(1) for found in re.finditer(rf"\w\[[\"']({re.escape(slot)})[\"']\]", model.text)]
-    return sorted({*named, *given, *read})
+    return next((start for start, kind in named if kind == "chunk"), min([*(start for start, _ in named), *modified, *read]))
 
 
-def _uses_of_variable(model: ModelText, method: str, variable: str) -> list[int]:
+def _first_of_variable(model: ModelText, method: str, variable: str) -> int:
+    """Returns where a variable of a method is first written; it is written somewhere."""
     inside = [piece.start for piece in model.variables_of(method) if piece.text == variable]
     used = [one.start for one in model.names if one.method == method and one.text == variable and is_variable(model, one)]
-    return sorted({*inside, *used})
-
-
-def _uses_of_part(model: ModelText, part: Part) -> list[int]:
-    return sorted({part.start, *(one.start for one in model.names if one.text == part.name and part_of(model, one) is part)})
+    return min(inside + used)

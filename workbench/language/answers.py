@@ -21,16 +21,6 @@ class LanguageError(Actr3dError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unanswered:
-    """The answer to a question that cannot be answered."""
-
-    unanswered: str
-    """Why."""
-    line: int | None
-    """The line of the text that is the reason."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class Item:
     """One completion."""
 
@@ -67,13 +57,11 @@ class Documentation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hover:
+class Hover(Documentation):
     """The documentation of the name between two positions."""
 
     start: int
     end: int
-    title: str
-    text: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,14 +14,7 @@ _ASSIGNED = re.compile(r"\s*(?:=(?!=)|:)")
 
 
 class ClassMembers:
-    """The members of the classes of a text: methods, parts, and attributes, also those that only methods set.
-
-    Args:
-        model: The text.
-        explicit: The same, with what ACT-R adds to it.
-        python: Answers questions about plain Python.
-        path: The file of the text.
-    """
+    """The members of the classes of a text: methods, parts, and attributes, also those that only methods set."""
 
     def __init__(self, model: ModelText, explicit: ExplicitText, python: PythonAnswers, path: str) -> None:
         self._model = model
@@ -124,7 +117,7 @@ class ClassMembers:
         """Returns the classes of what stands before a name, those of other texts as `module:name`; None if they are not known."""
         if name.before in (("self",), ("self", "__class__")) and name.agent:
             return {name.agent}
-        kinds = self._python.kinds(self._explicit, self._path, name.start - 1)
+        kinds = self._python.kinds(self._explicit, self._path, self._explicit.place(name.start - 1))
         return None if kinds and "typing:Self" in kinds else kinds
 
     def _own(self, agent: str, member: str) -> Iterator[int]:

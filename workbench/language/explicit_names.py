@@ -15,11 +15,7 @@ from workbench.language.tokens import line_of
 
 
 class ExplicitText:
-    """A text in which these names are assigned, and the positions that correspond to those of the model's text.
-
-    Args:
-        model: The model's text.
-    """
+    """A text in which these names are assigned, and the positions that correspond to those of the model's text."""
 
     def __init__(self, model: ModelText) -> None:
         bodies = {method.body[0]: method for agent in model.agents.values() for method in agent.methods.values() if method.body}

@@ -28,12 +28,7 @@ class TooManyQuestionsError(LanguageError):
 
 
 class LanguageServer(Receiver):
-    """Answers questions about texts, by a process of its own with limits of time and memory.
-
-    Args:
-        workers: The pool that starts workers.
-        folder: The models folder.
-    """
+    """Answers questions about texts, by a process of its own with limits of time and memory."""
 
     def __init__(self, workers: Workers, folder: Path) -> None:
         self._workers = workers
@@ -46,10 +41,7 @@ class LanguageServer(Receiver):
         self._reply: asyncio.Future[Reply] | None = None
 
     async def ask(self, question: bytes) -> bytes:
-        """Returns the answer to a question, both as JSON.
-
-        Args:
-            question: A `LanguageQuestion`.
+        """Returns the answer to a `LanguageQuestion`, both as JSON.
 
         Raises:
             LanguageError: If there is no answer, or not in time.

@@ -16,11 +16,22 @@ _PIECE = re.compile(r"(!?\??)([\w.-]*)")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Name:
-    """A name in the code, with what stands around it."""
+class Written:
+    """Some characters of the text, such as the name of a slot, and where they stand."""
 
     text: str
     start: int
+
+    @property
+    def end(self) -> int:
+        """Where they end."""
+        return self.start + len(self.text)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Name(Written):
+    """A name in the code, with what stands around it."""
+
     before: tuple[str, ...]
     """The names before it: `self`, `goal` in `self.goal.modify`."""
     keyword: bool
@@ -32,27 +43,15 @@ class Name:
     method: str
     """The method around it, as `agent.name`; empty outside of methods."""
 
-    @property
-    def end(self) -> int:
-        """Where it ends."""
-        return self.start + len(self.text)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Piece:
+class Piece(Written):
     """One constant or variable in a text, such as `?now` in `number:?now`."""
 
     sign: str
     """What stands before it: `?`, `!`, `!?` or nothing."""
-    text: str
-    start: int
     slot: str
     """The name of its slot, or the number."""
-
-    @property
-    def end(self) -> int:
-        """Where it ends."""
-        return self.start + len(self.text)
 
     @property
     def is_variable(self) -> bool:
@@ -61,20 +60,7 @@ class Piece:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SlotName:
-    """The name of a slot in a text."""
-
-    text: str
-    start: int
-
-    @property
-    def end(self) -> int:
-        """Where it ends."""
-        return self.start + len(self.text)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ChunkText:
+class ChunkText(Written):
     """A text that describes a chunk or a pattern; an f-string with computed values has several."""
 
     kind: str
@@ -83,23 +69,16 @@ class ChunkText:
     """The buffer or module that it is about."""
     agent: str
     method: str
-    text: str
-    start: int
     slot: str = ""
     """The slot whose value it is: `left` in `request("feature:opening", left="?left")`; empty if it names its slots."""
 
-    @property
-    def end(self) -> int:
-        """Where it ends."""
-        return self.start + len(self.text)
-
     @cached_property
-    def slots(self) -> tuple[SlotName, ...]:
+    def slots(self) -> tuple[Written, ...]:
         """The names of slots in it."""
         if self.slot:
             return ()
         found = ((word, _SLOT.match(word[0])) for word in _WORD.finditer(self.text))
-        return tuple(SlotName(text=slot[1], start=self.start + word.start()) for word, slot in found if slot and slot[1][0] != "?")
+        return tuple(Written(text=slot[1], start=self.start + word.start()) for word, slot in found if slot and slot[1][0] != "?")
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
@@ -189,18 +168,14 @@ class _Block:
 
 
 class ModelText:
-    """What the text of a model says, as far as it can be read.
-
-    Args:
-        text: The text.
-    """
+    """What the text of a model says, as far as it can be read."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self.agents: dict[str, Agent] = {}
         self.texts: list[ChunkText] = []
         self.names: list[Name] = []
-        self._tokens = tokens_of(text)
+        self._tokens = list(tokens_of(text))
         self._brackets: list[_Bracket] = []
         self._blocks: list[_Block] = []
         self._statement = 0
@@ -327,11 +302,8 @@ class ModelText:
             self._blocks.pop()
         method, self._headed = self._headed, None
         if method is not None and token.column > method.column and method.body is None:
-            self._body(method, token)
-
-    def _body(self, method: Method, token: CodeToken) -> None:
-        start = self.text.rfind("\n", 0, token.start) + 1
-        method.body = token.line, self.text[start : start + token.column]
+            start = self.text.rfind("\n", 0, token.start) + 1
+            method.body = token.line, self.text[start : start + token.column]
 
     def _before(self, number: int) -> tuple[str, ...]:
         """Returns the names that are joined by dots to the token of this number."""
@@ -353,7 +325,9 @@ class ModelText:
         if number == self._statement + 1 and self._text(number - 1) in ("def", "class"):
             self._define(self._tokens[number - 1], token)
         elif bracket is not None and bracket.kind == "def" and begins:
-            self._add_parameter(bracket.names[0], token.text, has_default=keyword or self._text(number - 1)[:1] == "*")
+            method = self.method(f"{self._agent}.{bracket.names[0]}")
+            if method is not None:
+                method.parameters[token.text] = keyword or self._text(number - 1)[:1] == "*"
         elif (
             bracket is not None
             and bracket.kind == "class"
@@ -382,11 +356,6 @@ class ModelText:
             self.agents[self._agent] = Agent(name=self._agent, start=name.start)
         elif directly:
             self.agents[around].methods[name.text] = Method(name=name.text, agent=around, start=name.start, column=keyword.column)
-
-    def _add_parameter(self, method: str, name: str, *, has_default: bool) -> None:
-        found = self.method(f"{self._agent}.{method}")
-        if found is not None:
-            found.parameters[name] = has_default
 
     def _take_sign(self, number: int, token: CodeToken) -> None:
         if token.text in ("(", "[", "{"):

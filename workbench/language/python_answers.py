@@ -95,14 +95,11 @@ class PythonAnswers:
     def _script(self, text: str, path: str) -> jedi.Script:
         if (text, path) not in self._scripts:
             self._scripts.clear()  # jedi changes what it has read of a file when it reads another text of it
-            self._scripts[text, path] = self._new_script(text, path)
+            where = self._folder / path
+            sources = list(dict.fromkeys([str(where.parent), str(self._folder), *sys.path]))
+            project = jedi.Project(self._folder, sys_path=sources, smart_sys_path=False)
+            self._scripts[text, path] = jedi.Script(text, path=where, project=project, environment=self._environment)
         return self._scripts[text, path]
-
-    def _new_script(self, text: str, path: str) -> jedi.Script:
-        where = self._folder / path
-        sources = list(dict.fromkeys([str(where.parent), str(self._folder), *sys.path]))
-        project = jedi.Project(self._folder, sys_path=sources, smart_sys_path=False)
-        return jedi.Script(text, path=where, project=project, environment=self._environment)
 
     def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
         """Returns what can be written at a position; nothing in a string or a comment. Private names are left out until one begins."""
@@ -170,12 +167,9 @@ class PythonAnswers:
         found = script.goto(line, 0, follow_imports=True)
         return next((one.module_name for one in found if one.module_path != self._folder / path), "")
 
-    def kinds(self, explicit: ExplicitText, path: str, at: int) -> set[str] | None:
-        """Returns the classes of the expression that ends at a position, those of others as `module:name`; None if they are not known."""
-        return self.kinds_at(explicit, path, explicit.place(at))
-
-    def kinds_at(self, explicit: ExplicitText, path: str, place: tuple[int, int]) -> set[str] | None:
-        """Returns the classes of the expression that ends at a line and column of the explicit text, as `kinds` does."""
+    def kinds(self, explicit: ExplicitText, path: str, place: tuple[int, int]) -> set[str] | None:
+        """Returns the classes of the expression that ends at a line and column of the explicit text, those of others as `module:name`;
+        None if they are not known."""
         return self._kinds(self._script(explicit.text, path).infer(*place), path)
 
     def kinds_of(self, explicit: ExplicitText, path: str, expression: str) -> set[str] | None:
@@ -227,12 +221,7 @@ class PythonAnswers:
 
 
 class PythonExpressions:
-    """Answers questions about expressions that are written after the end of a text.
-
-    Args:
-        script: Returns jedi's access to some code.
-        text: The text.
-    """
+    """Answers questions about expressions that are written after the end of a text."""
 
     def __init__(self, script: Callable[[str], jedi.Script], text: str) -> None:
         self._script = script

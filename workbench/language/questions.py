@@ -40,11 +40,7 @@ class LanguageQuestion(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Assistant:
-    """Answers questions about the texts of a folder.
-
-    Args:
-        python: Answers those about plain Python.
-    """
+    """Answers questions about the texts of a folder."""
 
     def __init__(self, python: PythonAnswers) -> None:
         self._python = python
@@ -169,11 +165,7 @@ class Assistant:
 
 
 class CodeUnits:
-    """Converts between numbers of characters and numbers of UTF-16 code units, which the page counts.
-
-    Args:
-        text: The text.
-    """
+    """Converts between numbers of characters and numbers of UTF-16 code units, which the page counts."""
 
     def __init__(self, text: str) -> None:
         self._large = [at for at, character in enumerate(text) if character > "\uffff"] if text and max(text) > "\uffff" else []

@@ -16,7 +16,7 @@ from workbench.language.answers import LanguageError, Renaming
 from workbench.language.class_members import ClassMembers
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.library_words import gives_joints, joints, slots_given
-from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, SlotName
+from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece, Written
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.scopes import Scope, Scopes
 from workbench.language.tokens import line_of
@@ -59,13 +59,7 @@ _LIBRARY = Meaning(what="local", owners=frozenset({"library"}))
 
 
 class References:
-    """The words of a text, and what they mean.
-
-    Args:
-        model: The text.
-        python: Answers questions about plain Python.
-        path: The file of the text.
-    """
+    """The words of a text, and what they mean."""
 
     def __init__(self, model: ModelText, python: PythonAnswers, path: str) -> None:
         self.model = model
@@ -119,7 +113,11 @@ class References:
             line = self._line(min(unproven))
             shown = self._written(min(unproven)) or word
             raise LanguageError(f"'{word}' cannot be renamed: whether '{shown}' in line {line} is the same is not known", line=line)
-        if meaning.what == "member" and what != "part" and not any(self._defines(place) for place in starts):
+        if (
+            meaning.what == "member"
+            and what != "part"
+            and not any(self._scopes.is_definition(self.explicit.place(start)) for start in starts)
+        ):
             raise LanguageError(unknown)
         return Renaming(name=word, what=what, starts=sorted(starts))
 
@@ -139,7 +137,8 @@ class References:
             strings |= self._as_values(word)
         elif target.meaning.what == "member":
             values = {at for at in self._as_values(word) if self._scopes.may_name_member(self.explicit.place(at))}
-            strings |= values if self._is_part(word, target.meaning) else {at for at in values if self._is_alone(at, word)}
+            whole = {at for at in values if (at, at + len(word)) in self.model.other_texts}  # strings that hold nothing but the word
+            strings |= values if self._is_part(word, target.meaning) else whole
         if target.meaning.what == "variable":
             strings = {at for at in strings if self._may_be_used(at, target.meaning)}
         if self._is_feature(word, target.meaning):  # which requests and patterns name in lower case: feature:pole
@@ -163,7 +162,7 @@ class References:
             return function is not None and bool(called if function in ("", "__init__") else called & {"", function})
         own = [str(kind) for kind in target.meaning.owners if kind in self.model.agents]
         family = {one for kind in own for one in self.members.family(kind, word)}
-        asked = (self._python.kinds_at(self.explicit, self._path, place) for place in self._scopes.asked_by_name)
+        asked = (self._python.kinds(self.explicit, self._path, place) for place in self._scopes.asked_by_name)
         return any(kinds is None or kinds & {*family, *(self.members.above_all(family) or kinds)} for kinds in asked)
 
     def _written(self, at: int) -> str:
@@ -192,10 +191,6 @@ class References:
         own = [str(one) for one in meaning.owners if one in self.model.agents] if meaning.what == "member" else []
         agents = [self.model.agents[one] for agent in own for one in sorted(self.members.family(agent, word))]
         yield from (agent.parts[word] for agent in agents if word in agent.parts)
-
-    def _is_alone(self, at: int, word: str) -> bool:
-        """Returns whether the word at a position is all that its string holds."""
-        return (at, at + len(word)) in self.model.other_texts
 
     def _may_be_used(self, at: int, variable: Meaning) -> bool:
         """Returns whether a production of a variable has the text at a position, itself or by the name of a constant."""
@@ -262,7 +257,7 @@ class References:
     def _variables(text: ChunkText) -> list[Piece]:
         return [piece for piece in text.pieces if piece.is_variable]
 
-    def _of_slot(self, text: ChunkText, slot: SlotName) -> Meaning | None:
+    def _of_slot(self, text: ChunkText, slot: Written) -> Meaning | None:
         """Returns the meaning of a slot in a text: an attribute in a pattern of a module or of the agent; None if it is not known."""
         if "." in slot.text:  # a path
             return None
@@ -514,6 +509,3 @@ class References:
                     f"'{slot}' may be a joint in the chunks of {kind.__name__}, and keeps its name here", line=self._line(at)
                 )
         self._check_read(slot, at)
-
-    def _defines(self, start: int) -> bool:
-        return self._scopes.is_definition(self.explicit.place(start))

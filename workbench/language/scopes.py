@@ -18,11 +18,7 @@ _FUNCTIONS = ("funcdef", "lambdef")
 
 
 class Scopes:
-    """The scopes of a text: the module, its classes, functions and comprehensions.
-
-    Args:
-        code: The text.
-    """
+    """The scopes of a text: the module, its classes, functions and comprehensions."""
 
     def __init__(self, code: str) -> None:
         self._module: Any = cast("Any", load_grammar()).parse(code)

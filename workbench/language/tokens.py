@@ -40,12 +40,8 @@ class CodeToken:
         return self.first and self.text in _STATEMENTS
 
 
-def tokens_of(code: str) -> list[CodeToken]:
-    """Returns the tokens of some code."""
-    return list(_tokens(code))
-
-
-def _tokens(code: str) -> Iterator[CodeToken]:
+def tokens_of(code: str) -> Iterator[CodeToken]:
+    """Yields the tokens of some code."""
     at = skipped = seen = 0
     for token in tokenize(code, version_info=_VERSION):
         at += len(token.prefix)

@@ -12,12 +12,10 @@ from contextlib import contextmanager, suppress
 from actr3d.recording import Recording
 from actr3d.simulation import Simulation
 from actr3d.simulation.observers import Glimpse
-from actr3d.values import to_json
 from workbench.loader import listing_of
-from workbench.worker.change_menu import change_menu
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
-from workbench.worker.messages import Facts, WorkerEnded
+from workbench.worker.messages import WorkerEnded
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.simulation_display import SimulationDisplay
 from workbench.worker.simulation_run import ENDINGS, SimulationRun
@@ -59,7 +57,7 @@ class LiveRun(SimulationRun):
         self._take_past()
         self._events = self._count = 0
         """The numbers of events and of ticks of the run when it was last looked at."""
-        controller.channel.post(self._first_facts())
+        controller.channel.post(self._facts(simulation.seed, {}))
         controller.set_run(self)
         if simulation.world.bodies:
             controller.use_real_time()
@@ -81,14 +79,6 @@ class LiveRun(SimulationRun):
         for moment in (furthest, time):
             if simulation.time != moment:
                 simulation.seek(moment)
-
-    def _first_facts(self) -> Facts:
-        simulation, shown = self._simulation, self._shown
-        world, initial_widths = to_json(shown.world()).encode(), to_json([(1, shown.initial_widths)]).encode()
-        seed, period = simulation.seed, simulation.period
-        changes = change_menu(agents_only=False)
-        known = {"parameters": b"{}", "world": world, "initial_widths": initial_widths, "changes": changes}
-        return Facts(kind="simulation", seed=seed, period=period, mj_model=shown.mj_model, **known)
 
     # -- what cells do
 

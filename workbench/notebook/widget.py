@@ -92,12 +92,7 @@ class Server:
 
 
 class Widget(anywidget.AnyWidget):
-    """Shows the workbench's page, or, where the browser cannot reach it, a replay that needs no server.
-
-    Args:
-        shown: The simulation, or the path of the recording.
-        traits: The values of its traits.
-    """
+    """Shows the workbench's page, or, where the browser cannot reach it, a replay that needs no server."""
 
     _esm = Path(__file__).with_name("widget.js")
     page = traitlets.Dict().tag(sync=True)

@@ -25,7 +25,8 @@ class Edges(Overlay):
 
     def __init__(self, canvas: OverlayCanvas) -> None:
         self._lines = Lines(canvas.server, "/overlays/edges", COLOUR, 2.5)
-        self._lines.show(False)
+        self.drawn = (self._lines,)
+        self.switch()
 
     @staticmethod
     def data(observed: Observed) -> dict[str, bytes]:
@@ -37,10 +38,6 @@ class Edges(Overlay):
         """Draws the edges that are seen now."""
         if by_body is not None:
             self._lines.set(np.frombuffer(b"".join(by_body.values()), dtype=np.float32).reshape(-1, 2, 3))
-
-    def switch(self) -> None:
-        """Shows or hides the edges."""
-        self._lines.show(self.visible)
 
 
 def _edges(body: Body, eyesight: CameraParameters) -> bytes:

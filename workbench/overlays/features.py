@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from actr3d.world.body import Body
 
 MAX_LABELS = 24
-"""Maximum number of labels."""
 MAX_DRAWN = 24
 """Maximum number of features of one search that are drawn."""
 DIAMOND = 0.08
@@ -42,6 +41,7 @@ class Features(Overlay):
         server = canvas.server
         self._chosen = Lines(server, "/overlays/features/chosen", (217, 138, 31), 4.0)
         self._noticed = Lines(server, "/overlays/features/noticed", (150, 120, 60), 2.0)
+        self.drawn = (self._chosen, self._noticed)
         self.switch()
 
     @staticmethod
@@ -65,11 +65,6 @@ class Features(Overlay):
             for one in first
         ]
         self.labels = [label for label in labels if np.isfinite(label["place"]).all()]
-
-    def switch(self) -> None:
-        """Shows or hides the features."""
-        self._chosen.show(self.visible)
-        self._noticed.show(self.visible)
 
 
 def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
@@ -103,11 +98,8 @@ def _outline(sighting: Sighting, points: Places) -> Places:
     """Returns the lines that show a feature, `(n, 2, 3)`; the first is the measured one.
 
     An opening has a line across it and its two sides. If its edges are not found, it is drawn perpendicular to the line of sight. An
-    obstacle has an upright line at its nearest point. For the features of a model's own detectors, see `_frame`.
-
-    Args:
-        sighting: The feature as it was seen.
-        points: The points of its view, from `points_of`.
+    obstacle has an upright line at its nearest point. For the features of a model's own detectors, see `_frame`. `points` are those of the
+    view, from `points_of`.
     """
     from actr3d.vision import Obstacle, Opening
 

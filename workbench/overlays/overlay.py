@@ -50,9 +50,6 @@ class Overlay(ABC):
 
     An overlay is a subclass with the decorator `@overlay`, in a file of this folder: `data` runs in the worker of the run, `draw` in
     the server.
-
-    Args:
-        canvas: The 3D view to draw in.
     """
 
     name: ClassVar[str]
@@ -63,6 +60,8 @@ class Overlay(ABC):
     labels: Sequence[dict[str, Any]] = ()
     """Labels that it wants, each with `text`, `place` [m], whether it is about what an agent attends to (`chosen`), and perhaps the ends of
     a measured `line` [m]; each browser places them where they cover nothing."""
+    drawn: Sequence[Any] = ()
+    """Its `Lines` and the like, which can be shown and hidden."""
 
     @abstractmethod
     def __init__(self, canvas: OverlayCanvas) -> None: ...
@@ -87,9 +86,10 @@ class Overlay(ABC):
             self.visible = visible
             self.switch()
 
-    @abstractmethod
     def switch(self) -> None:
-        """Shows or hides what is already drawn, according to `visible`."""
+        """Shows or hides what is already drawn, according to `visible`; by default `drawn`."""
+        for one in self.drawn:
+            one.show(self.visible)
 
 
 Kind = TypeVar("Kind", bound=Overlay)

@@ -21,7 +21,8 @@ class WalkedPaths(Overlay):
 
     def __init__(self, canvas: OverlayCanvas) -> None:
         self._lines = Lines(canvas.server, "/overlays/path", (230, 120, 30), 3.0)
-        self._lines.show(False)
+        self.drawn = (self._lines,)
+        self.switch()
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
@@ -38,7 +39,3 @@ class WalkedPaths(Overlay):
             places[:, :2] = piece
             pieces.append(np.stack((places[:-1], places[1:]), axis=1))
         self._lines.set(np.concatenate(pieces))
-
-    def switch(self) -> None:
-        """Shows or hides the paths."""
-        self._lines.show(self.visible)

@@ -25,6 +25,7 @@ class Plans(Overlay):
 
     def __init__(self, canvas: OverlayCanvas) -> None:
         self._copies = Copies(canvas, "/overlays/plan", (217, 138, 31))
+        self.drawn = (self._copies,)
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
@@ -39,10 +40,6 @@ class Plans(Overlay):
         self._copies.draw(data, [target for plan in plans for target in plan["targets"]])
         self.labels = [{"text": plan["text"], "place": plan["place"], "chosen": False} for plan in plans if plan["text"]]
         self.switch()
-
-    def switch(self) -> None:
-        """Shows or hides the copies."""
-        self._copies.show(self.visible)
 
 
 def _plan_of(agent: Model) -> Plan | None:

@@ -86,6 +86,7 @@ class Posture(Overlay):
 
     def __init__(self, canvas: OverlayCanvas) -> None:
         self._copies = Copies(canvas, "/overlays/posture", COLOUR)
+        self.drawn = (self._copies,)
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
@@ -96,10 +97,6 @@ class Posture(Overlay):
         """Draws the parts that differ from the current posture."""
         self._copies.draw(data, [target for body in (by_body or {}).values() for target in body])
         self.switch()
-
-    def switch(self) -> None:
-        """Shows or hides the copies."""
-        self._copies.show(self.visible)
 
 
 def _targets(body: Body) -> list[list[float]]:

@@ -103,7 +103,9 @@ class Breakpoints(PageCommand):
         return reply
 
     def carry_out(self, controller: RunController) -> None:
-        controller.run.names().check_new(self.productions, controller.watch.breakpoints)
+        names = controller.run.names()
+        for name in sorted({*self.productions} - controller.watch.breakpoints):  # what was named before may be gone
+            names.check("production", name)
         controller.watch.breakpoints = frozenset(self.productions)
 
 

@@ -15,11 +15,8 @@ from actr3d.values import to_json
 
 @cache
 def change_menu(*, agents_only: bool) -> bytes:
-    """Returns as JSON a list of changes: word, what it is `of`, title, help, text, and the fields with units and bounds.
-
-    Args:
-        agents_only: Whether to leave out changes of the world.
-    """
+    """Returns as JSON a list of changes, all or those of agents: word, what it is `of`, title, help, text, and the fields with units and
+    bounds."""
     kinds = [kind for kind in CHANGES.values() if issubclass(kind, AgentChange) or not agents_only]
     return to_json([_described(kind) for kind in kinds]).encode()
 

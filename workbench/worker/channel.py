@@ -82,7 +82,9 @@ class Channel:
         self.left = False
         """Whether this is a forked copy of the process, which sends the server nothing."""
         self._identity = _identity(wire)
-        self.start: Start = self._read_start()
+        start = self._next()
+        assert isinstance(start, Start)
+        self.start = start
         threading.Thread(target=self._read, name="reader", daemon=True).start()
         threading.Thread(target=self._write, name="writer", daemon=True).start()
 
@@ -96,11 +98,6 @@ class Channel:
             return self.inbox.get(timeout=timeout) if timeout is None or timeout > 0 else self.inbox.get_nowait()
         except queue.Empty:
             return None
-
-    def _read_start(self) -> Start:
-        message = self._next()
-        assert isinstance(message, Start)
-        return message
 
     def _next(self) -> Start | CommandMessage | SetOverlays | Leave | AskPosition | None:
         head = self._exactly(LENGTH)

@@ -217,14 +217,6 @@ class ControlledRun(ABC):
         """Returns the state of the physics, and the widths of apertures [m]."""
         return (None, {}) if self.shown is None else self.shown.scene()
 
-    def overlay_data(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns the current data of overlays, by kind."""
-        return {} if self.shown is None else self.shown.overlay_data(kinds)
-
-    def result(self) -> dict[str, Any] | None:
-        """Returns the measured result of the run, if any."""
-        return None if self.shown is None else self.shown.result()
-
     def touches(self) -> Touches:
         """Returns the contacts of bodies with anything but the ground in the last tick."""
         return frozenset() if self.shown is None else self.shown.touches()

@@ -91,7 +91,7 @@ def main(number: int) -> None:
     woken, wake = os.pipe()
     os.set_blocking(wake, False)
     os.set_blocking(woken, False)
-    signal.signal(signal.SIGCHLD, _woken)
+    signal.signal(signal.SIGCHLD, lambda _, __: None)  # the wakeup pipe reports the signal
     signal.set_wakeup_fd(wake)
     gc.collect()
     gc.freeze()
@@ -217,10 +217,6 @@ def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int],
     for descriptor in descriptors:
         os.close(descriptor)
     return pid
-
-
-def _woken(_: int, __: object) -> None:
-    """Does nothing: the wakeup pipe reports the signal."""
 
 
 def _bury(control: socket.socket, children: set[int]) -> None:

@@ -79,12 +79,7 @@ class KeptBranch:
         controller.went_back(controller.reason)
 
     def announce(self, events: int, what: str = "changed") -> None:
-        """Informs the server that the run continues differently from its present moment on.
-
-        Args:
-            events: Number of events up to the change.
-            what: What was done.
-        """
+        """Informs the server of what was done, and that the run continues differently after this number of events."""
         is_unrecorded = self._ahead and self._drop and self._controller.give_up_recording()
         if self._repeated is not None:
             self._controller.leave_recording(self._at, self._until)

@@ -91,12 +91,7 @@ class KnownRun:
         return [_EVENT.decode(line) for line in lines[first - before : end - before]]
 
     def difference(self, number: int, events: Sequence[TraceEvent]) -> int | None:
-        """Returns the number of the first event that differs from the recorded one; None if all agree.
-
-        Args:
-            number: The number of the first of the given events.
-            events: The events of the current run.
-        """
+        """Returns the number of the first event, of those from this number on, that differs from the recorded one; None if all agree."""
         known = zip(self._digests[number : number + len(events)], events, strict=False)
         return next((n for n, (digest, event) in enumerate(known, number) if hash(event_json(event)) != digest), None)
 

@@ -11,6 +11,7 @@ import sys
 import traceback
 import warnings
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -19,12 +20,11 @@ from actr3d.actr.loading.source_text import compile_source
 from actr3d.output import ModelOutput
 from actr3d.runner.before_exit import before_the_end, end_at_once
 from actr3d.runner.build_check import check_build
-from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import notice_of
 from workbench.worker.memory import watch_memory
-from workbench.worker.messages import MAX_PRINTED, Reply, WorkerEnded, notice
+from workbench.worker.messages import MAX_PRINTED, WorkerEnded, notice
 from workbench.worker.orphans import adopt
 from workbench.worker.run_controller import RunController
 
@@ -47,7 +47,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     errors = controller.errors = sys.stderr = sys.__stderr__ = _errors(channel, controller)  # type: ignore[misc]
     os.register_at_fork(after_in_child=errors.lines.forget)
     warnings.simplefilter("default")
-    warnings.showwarning = _warning_sender(channel)
+    warnings.showwarning = partial(_send_warning, channel)
     try:
         with before_the_end(controller.send_all):
             _run(channel, controller)
@@ -112,10 +112,10 @@ def _run(channel: Channel, controller: RunController) -> None:
     check_build(start.source, start.path)
     listing = listing_of(start.source, start.path)
     if start.job == "check":
-        from workbench.worker.simulation_run import check
+        if listing.kind == "simulation":
+            from workbench.worker.simulation_run import check
 
-        result = check(start.source, start.path, Path(start.folder)) if listing.kind == "simulation" else {}
-        channel.post(Reply(id=0, result=to_json(result).encode()))
+            check(start.source, start.path, Path(start.folder))
     elif listing.kind == "simulation":
         from workbench.worker.simulation_run import SimulationRun
 
@@ -185,10 +185,6 @@ class _PastPrint(io.RawIOBase):
 _PAST_PRINT = _PastPrint()
 
 
-def _warning_sender(channel: Channel) -> Any:
-    """Returns a replacement for `warnings.showwarning` that sends warnings to the server."""
-
-    def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:
-        channel.post(notice("warning", str(message), filename, lineno))
-
-    return show
+def _send_warning(channel: Channel, message: Warning | str, _: type[Warning], filename: str, lineno: int, *__: Any) -> None:
+    """Sends a warning to the server, in place of `warnings.showwarning`."""
+    channel.post(notice("warning", str(message), filename, lineno))

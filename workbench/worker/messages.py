@@ -235,7 +235,7 @@ class Reply(Message, frozen=True, kw_only=True):
     loses: bool = False
     """Whether it was refused only because something would be lost; see `RunChange.drop`."""
     field: str | None = None
-    """The field of the command because of whose value it was refused, with whose name `error` begins; None for another reason."""
+    """The field whose value was refused, as a `FieldError` names it; None for any other error."""
     line: int | None = None
     """The line of a text that was the reason to refuse a question about it."""
 

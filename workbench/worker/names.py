@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -103,15 +103,6 @@ class Names:
         if near or what not in self.growing:
             raise Actr3dError(f"no {what} '{name}'{near or there_are(short if len(short) == len(known) else known)}")
 
-    def check_new(self, productions: Iterable[str], before: Iterable[str]) -> None:
-        """Checks that productions of these names exist, except those that were named before.
-
-        Raises:
-            Actr3dError: If one does not exist.
-        """
-        for name in sorted(set(productions).difference(before)):
-            self.check("production", name)
-
 
 def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notice]:
     """Yields a warning for each breakpoint whose production no longer exists, for example after an edit."""
@@ -141,12 +132,7 @@ def there_are(known: Iterable[str]) -> str:
 
 
 def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
-    """Returns the names of the things in models.
-
-    Args:
-        tops: The top models, or the agents of a simulation.
-        bodies: The bodies.
-    """
+    """Returns the names of the things in models."""
     productions: set[str] = set()
     buffers: set[str] = set()
     modules: set[str] = set()
@@ -173,21 +159,11 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
 
 
 def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: ModelListing, source: str, folder: Path) -> Names:
-    """Returns the names of the things in a program, as far as it has run.
-
-    Args:
-        tops: The models that have been created.
-        bodies: The bodies of the simulation on screen.
-        listing: The description read from its text.
-        source: Its text.
-        folder: The folder of its helper modules.
-    """
+    """Returns the names of the things in a program, as far as it has run."""
     made = names_of(tops, bodies)
-    written = {name.rpartition(".")[2] for name in listing.productions}
-    productions = made.productions | written
+    productions = made.productions | {name.rpartition(".")[2] for name in listing.productions}
     hidden = not productions or _has_helpers(source, folder)
-    growing = frozenset(("production", "buffer") if hidden else ("buffer",))
-    return Names(productions=productions, buffers=made.buffers, bodies=made.bodies, modules=made.modules, fed=made.fed, growing=growing)
+    return replace(made, productions=productions, growing=frozenset(("production", "buffer") if hidden else ("buffer",)))
 
 
 def _has_helpers(source: str, folder: Path) -> bool:

@@ -141,12 +141,7 @@ class _PassRecorder:
 
 
 class ProgramRun(ControlledRun):
-    """Runs a program under a controller; its time is that of all its runs, one after the other.
-
-    Args:
-        controller: Decides when it continues.
-        listing: The description read from the model's text.
-    """
+    """Runs a program under a controller; its time is that of all its runs, one after the other."""
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         start = controller.channel.start
@@ -155,8 +150,38 @@ class ProgramRun(ControlledRun):
         self._source = with_values(start.source, start.settings)
         self._simulates = makes_simulations(self._source, Path(start.folder), start.helpers)
         self._seed = fresh_seed() if start.seed is None else start.seed
-        self._limits = RunLimits(trace=Trace("all"))
         self._output: ProgramOutput | None = None
+        self._furthest: int = 0
+        self._seek_to: int | None = None
+        """The time up to which it runs without being shown or paused [us]."""
+        self._over = False
+        """Whether the program has been at its end."""
+        self._introduced = False
+        """Whether the server knows that the run has begun."""
+        self._simulations: dict[int, tuple[SimulationDisplay, int]] = {}
+        """Those nearest to the present by number, and when each began [us]. They are kept when the program is run again: the stored past of
+        a simulation is passed on to the one that begins in its place."""
+        self._initial_widths: dict[int, dict[str, float]] = {}
+        """The widths of apertures at the start of each simulation [m], by its number among all runs; kept likewise."""
+        self._scene: tuple[bytes | None, bytes, bytes] = (None, b"null", b"[]")
+        """The compiled scene, the world, and the widths at the start of simulations that the server knows."""
+        self._scene_of: SimulationDisplay | None = None
+        """The simulation that was shown last."""
+        self._ahead: dict[int, StateHistory] = {}
+        """The recorded states of simulations that have not begun yet in this repetition of a recording, by their number among all runs."""
+        self._commands: list[RecordedCommand] = [RecordedCommand(*command) for command in start.commands]
+        """The changes of users, which each pass through the program repeats."""
+        self._recorded_simulations: set[str] = set()
+        """The names of the facts of simulations that are recorded."""
+        self._undoing: KeptBranch | None = None
+        """While the program is run again up to a change that a user has undone: what is kept of its future."""
+        self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
+        """The helper modules as they were the first time; see `actr3d.actr.loading.helper_modules`."""
+        self._begin_pass()
+
+    def _begin_pass(self) -> None:
+        """Sets what each pass through the program begins with."""
+        self._again = False
         self._clock: int = 0
         self._tick_begin: int | None = None
         """While a simulation ticks: its own time at the start of the tick [us], which is the time of the clock."""
@@ -166,39 +191,14 @@ class ProgramRun(ControlledRun):
         """The times of each run, by its number."""
         self._failed = ""
         """The memory from which the last retrieval failed; empty if it did not, or if a production has fired since."""
-        self._furthest: int = 0
-        self._seek_to: int | None = None
-        """The time up to which it runs without being shown or paused [us]."""
-        self._again = False
-        self._over = False
-        """Whether the program has been at its end."""
-        self._introduced = False
-        """Whether the server knows that the run has begun."""
         self._begun = 0
         """The number of simulations that have begun."""
-        self._simulations: dict[int, tuple[SimulationDisplay, int]] = {}
-        """Those nearest to the present by number, and when each began [us]. They are kept when the program is run again: the stored past of
-        a simulation is passed on to the one that begins in its place."""
-        self._initial_widths: dict[int, dict[str, float]] = {}
-        """The widths of apertures at the start of each simulation [m], by its number among all runs; kept likewise."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
         """The latest runs: number, run and model."""
         self._runs = 0
         """How many runs there have been."""
         self._shown: SimulationDisplay | None = None
         """The simulation that has ticked last."""
-        self._scene: tuple[bytes | None, bytes, bytes] = (None, b"null", b"[]")
-        """The compiled scene, the world, and the widths at the start of simulations that the server knows."""
-        self._scene_of: SimulationDisplay | None = None
-        """The simulation that was shown last."""
-        self._ahead: dict[int, StateHistory] = {}
-        """The recorded states of simulations that have not begun yet in this repetition of a recording, by their number among all runs."""
-        self._commands = [RecordedCommand(*command) for command in start.commands]
-        """The changes of users, which each pass through the program repeats."""
-        self._changes = ProgramChanges(self._limits, self._commands)
-        self._recorded: _PassRecorder | None = None
-        self._recorded_simulations: set[str] = set()
-        """The names of the facts of simulations that are recorded."""
         self._waits: tuple[Scheduler, int, int] | None = None
         """While a model without a body waits for its time to pass: its scheduler, the time of its latest event [us], and the time of the
         program then [us]."""
@@ -206,12 +206,18 @@ class ProgramRun(ControlledRun):
         """While a simulation waits for its next tick: this simulation."""
         self._made_at: list[int] = []
         """When each of the known changes up to the present was made: the time of the program [us]."""
-        self._undoing: KeptBranch | None = None
-        """While the program is run again up to a change that a user has undone: what is kept of its future."""
         self._changed = False
         """Whether a user has changed something whose effects of the moment have not happened yet."""
-        self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
-        """The helper modules as they were the first time; see `actr3d.actr.loading.helper_modules`."""
+        trace = Trace("all")
+        trace.listen(self._note_time)
+        trace.listen(self._note_failure)
+        self._limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
+        self._recorded: _PassRecorder | None = None
+        if self._recording is not None:
+            self._recorded = _PassRecorder(self._recording, self._recorded_simulations, lambda: self._left)
+            self._limits.recorder = self._recorded
+            trace.listen(self._recorded.event)
+        self._changes = ProgramChanges(self._limits, self._commands)
 
     def play(self) -> None:
         """Runs the program, and again if a user goes back, until the worker must stop."""
@@ -272,18 +278,15 @@ class ProgramRun(ControlledRun):
 
     def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
-        parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world, initial_widths = self._scene_now()
-        period = seconds(self.period)
-        changes = change_menu(agents_only=self._shown is None)
         facts = Facts(
             kind="program",
             seed=self._seed,
-            period=period,
-            parameters=parameters,
+            period=seconds(self.period),
+            parameters=to_json({**known, **self._controller.channel.start.settings}).encode(),
             world=world,
             initial_widths=initial_widths,
-            changes=changes,
+            changes=change_menu(agents_only=self._shown is None),
             mj_model=mj_model,
         )
         self._controller.channel.post(facts)
@@ -297,24 +300,8 @@ class ProgramRun(ControlledRun):
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
         controller = self._controller
-        self._again = False
-        self._clock = self._begun = self._runs = 0
-        self._held.clear()
-        self._shown = self._waits = self._ticked = self._recorded = None
-        self._changed = False
-        self._tick_begin = None
-        self._event_times = array("q")
-        self._made_at.clear()
-        self._run_times.clear()
-        self._failed = ""
-        trace = Trace("all")
-        trace.listen(self._note_time)
-        trace.listen(self._note_failure)
-        self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
-        if self._recording is not None:
-            limits.recorder = self._recorded = again = _PassRecorder(self._recording, self._recorded_simulations, lambda: self._left)
-            trace.listen(again.event)
-        self._changes = ProgramChanges(limits, self._commands)
+        self._begin_pass()
+        limits = self._limits
         if not self._simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
         exited: SystemExit | None = None

@@ -52,11 +52,7 @@ class Leaving(EndOfRun):
 
 
 class RunController:
-    """Decides when a run continues and when it waits, carries out users' commands in between, and sends its state and events.
-
-    Args:
-        channel: The connection to the server.
-    """
+    """Decides when a run continues and when it waits, carries out users' commands in between, and sends its state and events."""
 
     def __init__(self, channel: Channel) -> None:
         start = channel.start
@@ -100,7 +96,7 @@ class RunController:
     def set_run(self, run: ControlledRun) -> None:
         """Sets the run to control; its names are known by now."""
         self.run = run
-        self.channel.events = self._count
+        self.channel.events = lambda: len(run.trace)
         if self.watch.breakpoints:  # without breakpoints, no names need to be collected
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.channel.post(lost)
@@ -128,10 +124,6 @@ class RunController:
         """Sets real time for a run with a body, unless a user has chosen a speed."""
         if self.channel.start.real_time:
             self.pacer.set(1.0)
-
-    def _count(self) -> int:
-        """Returns the number of events."""
-        return len(self.run.trace)
 
     # -- calls from the run
 
@@ -172,9 +164,6 @@ class RunController:
         """Sends at intervals how far a seek has come, and carries out commands that cancel it.
 
         Other commands wait until the run is there.
-
-        Args:
-            cancellable: Whether users can cancel it.
         """
         if perf_counter() - self._shown < HURRIED:
             return
@@ -388,6 +377,7 @@ class RunController:
         trace = run.trace
         count = len(trace)
         physics, apertures = run.scene()
+        shown = run.shown
         state = State(
             status=self.status,
             reason=self.reason,
@@ -402,9 +392,9 @@ class RunController:
             parts=bounded_json(run.parts(), whole=plain_to_json),
             apertures=apertures,
             parameters=bounded_json(run.changed_parameters()),
-            result=bounded_json(run.result() if self.status == "ended" else None),
+            result=bounded_json(shown.result() if shown is not None and self.status == "ended" else None),
             physics=physics,
-            overlay_data=run.overlay_data(self._overlays) if self._overlays else {},
+            overlay_data=shown.overlay_data(self._overlays) if shown is not None and self._overlays else {},
         )
         with self._sending:
             self._send(state, trace)

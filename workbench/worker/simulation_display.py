@@ -49,11 +49,7 @@ class SimulationDisplay:
         self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
     def world(self, parameters: Iterable[Parameter] = ()) -> dict[str, Any]:
-        """Returns the description of the world for pages, as plain values.
-
-        Args:
-            parameters: The model's parameters, which limit the widths of doorways during the run.
-        """
+        """Returns the description of the world for pages, as plain values; the model's parameters limit the widths of doorways."""
         return {
             **self.surroundings,
             "empty": self.simulation.world.mj_model.ngeom == 0,
@@ -107,11 +103,7 @@ class SimulationDisplay:
         return CurveReader(from_bytes(self.mj_model), self.surroundings)
 
     def colours(self, geoms: Mapping[int, tuple[int, ...]]) -> dict[int, str]:
-        """Returns the colours with which objects are drawn in the scene, by label.
-
-        Args:
-            geoms: The geoms of each object, by label.
-        """
+        """Returns the colours with which objects are drawn in the scene, by label."""
         return {label: self._colour_of(own) for label, own in geoms.items()}
 
     @cached_property

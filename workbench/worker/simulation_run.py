@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -45,12 +44,7 @@ ENDINGS = {"stop": "the model called stop()", "done": "no agent has anything lef
 
 
 class SimulationRun(ControlledRun):
-    """Runs a simulation under a controller.
-
-    Args:
-        controller: Decides when it continues.
-        listing: The description read from the model's text.
-    """
+    """Runs a simulation under a controller."""
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         self._controller = controller
@@ -87,7 +81,7 @@ class SimulationRun(ControlledRun):
             if simulation.world.bodies:
                 self._controller.use_real_time()
             try:
-                self._controller.channel.post(self._facts(limits, parameters))
+                self._controller.channel.post(self._facts(limits.program_seed, parameters))
                 self._controller.set_run(self)
                 if self._known_run is not None:
                     self._controller.repeat_recorded(self._known_run)
@@ -119,10 +113,10 @@ class SimulationRun(ControlledRun):
             if known_run.facts.get("failed") is not None:
                 self._failed_at = known_run.time
 
-    def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
+    def _facts(self, seed: int | str, parameters: dict[str, Any]) -> Facts:
         return Facts(
             kind="simulation",
-            seed=limits.program_seed,
+            seed=seed,
             period=self._simulation.period,
             parameters=to_json(parameters).encode(),
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
@@ -315,13 +309,8 @@ class SimulationRun(ControlledRun):
         return names_of(self.tops(), self._simulation.world.bodies)
 
 
-def check(source: str, filename: str, folder: Path) -> dict[str, Any]:
-    """Loads a model, builds what it describes with its defaults, and runs one tick, at whose beginning productions are checked.
-
-    Returns the values of the model's parameters.
-    """
-    limits = RunLimits(seed=0)
-    with limits, BuiltOutput():
-        simulation, parameters = Blueprint(source, filename, folder).build({})
+def check(source: str, filename: str, folder: Path) -> None:
+    """Loads a model, builds what it describes with its defaults, and runs one tick, at whose beginning productions are checked."""
+    with RunLimits(seed=0), BuiltOutput():
+        simulation, _ = Blueprint(source, filename, folder).build({})
         simulation.advance(1)
-    return json.loads(to_json(parameters))

@@ -54,10 +54,10 @@ def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], fo
 
 
 def _given(text: str) -> set[str]:
-    """Returns every name that the code of a text may make a slot; all its words if it cannot be parsed."""
+    """Returns every name that the code of a text may make a slot; all its words if it is nested too deeply."""
     try:
         return Vocabulary(syntax_tree(text)).giving
-    except (SyntaxError, ValueError, RecursionError):
+    except RecursionError:
         return {*_WORD.findall(text)}
 
 
@@ -82,21 +82,15 @@ def _helpers(folder: str) -> Iterable[str]:
 
 def _slots(text: str) -> set[str]:
     """Returns the slots that are named in the patterns and chunks of a text."""
-    with suppress(SyntaxError, ValueError, RecursionError):
-        nodes = ast.walk(syntax_tree(text))
-        texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str) and "\n" not in node.value]
-        return {slot for each in texts for slot in _SLOT.findall(each)}
-    return set()
+    nodes = ast.walk(syntax_tree(text))
+    texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str) and "\n" not in node.value]
+    return {slot for each in texts for slot in _SLOT.findall(each)}
 
 
 def _computes_slots(text: str) -> bool:
     """Returns whether a text computes slot names, for example by `f"{name}:{value}"`."""
-    with suppress(SyntaxError, ValueError, RecursionError):
-        for node in ast.walk(syntax_tree(text)):
-            parts = node.values if isinstance(node, ast.JoinedStr) else []
-            if any(_names_slot(part, after) for part, after in pairwise(parts)):
-                return True
-    return False
+    strings = (node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.JoinedStr))
+    return any(_names_slot(part, after) for string in strings for part, after in pairwise(string.values))
 
 
 def _names_slot(part: ast.expr, after: ast.expr) -> bool:

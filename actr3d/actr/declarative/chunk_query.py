@@ -8,30 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, Protocol, cast
+from typing import Any, TypeAlias, cast
 
 from actr3d.actr.chunks.chunk import Chunk, Slot, as_text
 from actr3d.actr.chunks.pattern import Pattern, by_variable, parse
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.partial_matching import Partial
-
-
-class ChunkSearch(Protocol):
-    """A search for chunks."""
-
-    @property
-    def partial(self) -> Partial | None:
-        """Computes the penalties of mismatches, if similar values may match."""
-        ...
-
-    @property
-    def equal(self) -> Sequence[tuple[Slot, str]]:
-        """The required slots and the texts of their values."""
-        ...
-
-    def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order in which they were added."""
-        ...
 
 
 @lru_cache(maxsize=4096)
@@ -227,6 +209,7 @@ class PatternSearch:
 
     @property
     def equal(self) -> list[tuple[Slot, str]]:
+        """The required slots and the texts of their values."""
         return [(slot, value) for op, _, slot, value in self._pattern.conditions if op == "is" and _is_plain(slot)]
 
     def among(self, store: ChunkStore) -> list[Chunk]:
@@ -240,6 +223,9 @@ class PatternSearch:
                 chunks = fewer
         match = self._pattern.match
         return [chunk for chunk in chunks if match(chunk) is not None]
+
+
+ChunkSearch: TypeAlias = PlainSearch | PatternSearch
 
 
 def _is_plain(slot: Slot) -> bool:

@@ -179,7 +179,9 @@ class Memory(WithParameters, Model):
         Raises:
             PatternException: If the text is not a pattern.
         """
-        partial = next((one for one in (self.partials if partial is None else [partial]) if _costs(one)), None)
+        partials = self.partials if partial is None else [partial]
+        # Only one with a strength finds chunks that are only similar; a modeller's own class need not have one.
+        partial = next((one for one in partials if getattr(one, "strength", 1.0) is not None), None)
         number = self._begin_request()
         sch = self.sch
         search = search_for(pattern, sch.bound, partial)
@@ -357,11 +359,6 @@ class Memory(WithParameters, Model):
             outcome = "pending" if self.busy else "failed" if last.chosen is None else "retrieved"
             data = {**last.to_data(), "made": seconds(last.time), "outcome": outcome}
             trace.emit(self.sch.now_us, self._path, "request", data)
-
-
-def _costs(partial: Partial) -> bool:
-    """Returns whether a request may find chunks that are only similar; a modeller's own class need not have a strength."""
-    return getattr(partial, "strength", 1.0) is not None
 
 
 # What the rest of the library asks of a memory. These are functions that use private names, because productions see every public

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 from actr3d.actr.chunks.chunk import as_text
@@ -15,16 +15,6 @@ from actr3d.actr.reasons import ConditionReason, ProductionReason
 from actr3d.errors import did_you_mean
 
 AT_THE_LAST_MATCH = "as at the latest match"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Failure:
-    """A condition that does not hold, or for which this is not known."""
-
-    condition: str
-    expected: str
-    found: str
-    unknown: bool = False
 
 
 class ConditionTests:
@@ -50,13 +40,14 @@ class ConditionTests:
         """How the facts that it depends on are known; None if all are certain."""
         self.bindings: dict[str, str] = {}
         """The variables bound by the conditions before the failing one, as text."""
-        self.failure: Failure | None = None
+        self.failure: ConditionReason | None = None
+        """The first that does not hold, or for which this is not known."""
         self.conditions = tuple(self._try(number, condition) for number, condition in enumerate(production.conditions))
 
     @property
     def matches(self) -> bool | None:
         """Whether all conditions hold; None if that is not known."""
-        return self.failure is None or (None if self.failure.unknown else False)
+        return self.failure is None or self.failure.holds
 
     def _try(self, number: int, condition: Condition) -> ConditionReason:
         """Tests one condition; the first that fails decides the result."""
@@ -67,22 +58,22 @@ class ConditionTests:
             self.failure = failure
             self.source = self._source or self.source
             self.bindings = {name: as_text(value) for name, value in self._bound.items()}
-        if failure is None:
-            found = self._fact or "unknown"
-            return ConditionReason(
-                condition=_text(condition), holds=True, expected=self._expected(condition), found=found, source=self._source
-            )
-        holds = None if failure.unknown else False
-        return ConditionReason(
-            condition=failure.condition, holds=holds, expected=failure.expected, found=failure.found, source=self._source
-        )
+        if failure is not None:
+            return replace(failure, source=self._source)
+        return _reason(condition, self._expected(condition), self._fact or "unknown", holds=True, source=self._source)
 
     def _expected(self, condition: Condition) -> str:
-        if condition.op in ("empty", "call"):
-            return "empty" if condition.op == "empty" else "anything but False"
-        return _expected(condition, self._bound.get(condition.value) if condition.op in ("same", "differs") else condition.value)
+        op, value = condition.op, condition.value
+        if op == "empty":
+            return "empty"
+        if op == "call":
+            return "anything but False"
+        if op == "bind":
+            return f"some value for ?{value}"
+        wanted, named = (self._bound.get(value), f" (?{value})") if op in ("same", "differs") else (value, "")
+        return f"{'anything but ' if op in ('not', 'differs') else ''}'{wanted}'{named}"
 
-    def _failure(self, number: int, condition: Condition) -> Failure | None:
+    def _failure(self, number: int, condition: Condition) -> ConditionReason | None:
         op, name, key, value = condition
         name = name or "self"
         if op == "call":
@@ -90,32 +81,32 @@ class ConditionTests:
         if op == "empty":
             fact = self._known(self._state.empty(self._production, name))
             if is_unknown(fact.value):
-                return self._unknown(_text(condition), "empty", fact.source)
+                return self._unknown(condition, "empty", fact.source)
             self._fact = "empty" if fact.value else "not empty"
-            return None if fact.value else Failure(condition=_text(condition), expected="empty", found=self._fact)
+            return None if fact.value else _reason(condition, "empty", self._fact)
         if by_variable(key):
             if key[1:] in self._open:
-                return self._unknown(_text(condition), f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
+                return self._unknown(condition, f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
             if key[1:] not in self._bound:
                 return self._not_bound(condition, f"a slot that ?{key[1:]} names", key[1:])
             key = slot_named(self._bound[key[1:]])
         fact = self._known(self._state.slot(self._production, name, key))
         wanted = self._bound.get(value) if op in ("same", "differs") else value
         unbound = op in ("same", "differs") and value not in self._bound
-        expected = f"{'anything but ' if op == 'differs' else ''}?{value}" if unbound else _expected(condition, wanted)
+        expected = f"{'anything but ' if op == 'differs' else ''}?{value}" if unbound else self._expected(condition)
         if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
             if op == "bind":
                 self._open.add(value)
-            return self._unknown(_text(condition), expected, fact.source)
+            return self._unknown(condition, expected, fact.source)
         if isinstance(fact.value, Missing):
-            return Failure(condition=_text(condition), expected=expected, found=self._nothing(name, key))
+            return _reason(condition, expected, self._nothing(name, key))
         if unbound:
             return self._not_bound(condition, expected, value)
         self._fact = f"'{fact.value}'"
         if op == "bind":
             self._bound[value] = fact.value
         elif (fact.value == wanted) != (op in ("is", "same")):
-            return Failure(condition=_text(condition), expected=expected, found=self._fact)
+            return _reason(condition, expected, self._fact)
         return None
 
     def _known(self, fact: Fact) -> Fact:
@@ -127,56 +118,47 @@ class ConditionTests:
         known = self._state.slots(self._production, name)
         return f"no slot '{key}'{did_you_mean(str(key), known)}" if known else f"{name} is empty"
 
-    def _not_bound(self, condition: Condition, expected: str, variable: str) -> Failure:
+    def _not_bound(self, condition: Condition, expected: str, variable: str) -> ConditionReason:
         """Returns the failure of an unbound variable; it is not certain if an earlier condition, which may bind it, has failed."""
-        settled = self.failure is not None
-        return Failure(condition=_text(condition), expected=expected, found=f"?{variable} is not bound", unknown=settled)
+        return _reason(condition, expected, f"?{variable} is not bound", holds=None if self.failure is not None else False)
 
-    def _failure_of_function(self, number: int, condition: Condition) -> Failure | None:
+    def _failure_of_function(self, number: int, condition: Condition) -> ConditionReason | None:
         result = self._state.function_result(self._production, number)
-        text, expected = _text(condition), "anything but False"
+        expected = self._expected(condition)
         if self.failure is not None:
-            return _not_known(text, expected, "the function is called only if all conditions before it hold")
+            return _not_known(condition, expected, "the function is called only if all conditions before it hold")
         if result is None:
-            return self._unknown(text, expected, "the function has not been called")
+            return self._unknown(condition, expected, "the function has not been called")
         self._source = result.source
         if self._open or _texts(result.given) != _texts(self._bound):
             with_what = " ".join(f"?{name}={as_text(value)}" for name, value in result.given.items())
-            return _not_known(text, expected, f"the function was last called with {with_what or 'no variables'}")
+            return _not_known(condition, expected, f"the function was last called with {with_what or 'no variables'}")
         if not result.agrees:
-            return Failure(condition=text, expected=expected, found="False, or an error such as a missing slot")
+            return _reason(condition, expected, "False, or an error such as a missing slot")
         self._bound.update(result.bound)
         self._fact = "a value other than False"
         return None
 
-    def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
+    def _unknown(self, condition: Condition, expected: str, why: str | None) -> ConditionReason | None:
         """Returns None, for a condition that holds, if the production matched last; otherwise an unknown failure."""
         if self.failure is None and self._state.matched(self._production):
             self._source = AT_THE_LAST_MATCH
             return None
-        return _not_known(text, expected, why or "it depends on something unknown")
+        return _not_known(condition, expected, why or "it depends on something unknown")
 
 
-def _text(condition: Condition) -> str:
-    """Returns a condition as text, with the name of the object that it tests."""
-    return f"{condition.name or 'self'}: {'None' if condition.op == 'empty' else condition}"
+def _reason(condition: Condition, expected: str, found: str, *, holds: bool | None = False, source: str | None = None) -> ConditionReason:
+    """Returns what is known about a condition, whose text has the name of the object that it tests."""
+    text = f"{condition.name or 'self'}: {'None' if condition.op == 'empty' else condition}"
+    return ConditionReason(condition=text, holds=holds, expected=expected, found=found, source=source)
 
 
-def _not_known(text: str, expected: str, why: str) -> Failure:
-    return Failure(condition=text, expected=expected, found=f"unknown ({why})", unknown=True)
+def _not_known(condition: Condition, expected: str, why: str) -> ConditionReason:
+    return _reason(condition, expected, f"unknown ({why})", holds=None)
 
 
 def _texts(bound: Bindings) -> dict[str, str]:
     return {name: as_text(value) for name, value in bound.items()}
-
-
-def _expected(condition: Condition, wanted: Any) -> str:
-    """Returns what a condition on a slot expects."""
-    op, value = condition.op, condition.value
-    if op == "bind":
-        return f"some value for ?{value}"
-    named = f" (?{value})" if op in ("same", "differs") else ""
-    return f"{'anything but ' if op in ('not', 'differs') else ''}'{wanted}'{named}"
 
 
 def why(production: Production, state: AgentState) -> ProductionReason:

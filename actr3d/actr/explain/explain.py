@@ -5,7 +5,6 @@ An explanation of the present reads the model; the run need not be traced. An ex
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TypeVar
 
 from actr3d.actr.declarative.memory import Memory
@@ -27,7 +26,7 @@ Kind = TypeVar("Kind", bound=Model)
 def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
     """Explains an agent, the parallel systems inside it, and the memories it has or sees; see `ProductionSystem.explain`."""
     ensure_converted(agent)
-    systems = list(_systems(agent))
+    systems = [part for part in subtree(agent) if isinstance(part, ProductionSystem)]
     for system in systems:
         prepare_context(system)
     memories, eyes = _modules_in_sight(Memory, agent, systems), _modules_in_sight(Searching, agent, systems)
@@ -78,12 +77,6 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
         came = next(place.time for place in places_in(agent, trace) if place.path is not None)
         raise ParameterError(f"explain(at): '{path_of(agent)}' did not exist at {at:g} s; it was added at {seconds(came):g} s")
     return state
-
-
-def _systems(agent: ProductionSystem) -> Iterator[ProductionSystem]:
-    for part in subtree(agent):
-        if isinstance(part, ProductionSystem):
-            yield part
 
 
 def _modules_in_sight(kind: type[Kind], agent: Model, systems: list[ProductionSystem]) -> list[Kind]:

@@ -15,7 +15,7 @@ from actr3d.actr.kernel.tree import path_of, places_in
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import records_changes, result_label
 from actr3d.actr.procedural.production import Production, ProductionOwner
-from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of, system_of, utility_part_names
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of, system_of, utility_parts
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
 from actr3d.trace import Trace, TraceEvent, renumbered
@@ -197,7 +197,7 @@ class Past:
 
     def parts(self, production: Production) -> dict[str, float | None]:
         known = self._of(production.system).parts.get(production.name, {})
-        return {name: known.get(name) for name in utility_part_names(system_of(production))}
+        return {name: known.get(name) for name in utility_parts(system_of(production), production)}
 
     def choice(self, production: Production) -> ConflictSet | None:
         known = self._of(production.system)

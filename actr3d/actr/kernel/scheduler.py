@@ -330,8 +330,9 @@ class Scheduler:
         passing = None if self.limits is None or self.in_lockstep else self.limits.passing
         still = 0
         while not self.stop_flag:
-            if self.incoming:
-                self._take_incoming()
+            while self.incoming:
+                func, delay, args, keys, priority = self.incoming.popleft()
+                self.add(func, delay, args, keys, priority)
             if not heap or (time := heap[0][0]) > end:
                 break
             if time > self.now_us:
@@ -395,12 +396,6 @@ class Scheduler:
             + (f" of '{whose}'" if whose else "")
             + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
         )
-
-    def _take_incoming(self) -> None:
-        """Schedules the calls requested by other threads."""
-        while self.incoming:
-            func, delay, args, keys, priority = self.incoming.popleft()
-            self.add(func, delay, args, keys, priority)
 
     def idle_now(self) -> bool:
         """Returns whether no other event happens before time passes, so that the last event of the moment may happen at once."""

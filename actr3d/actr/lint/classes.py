@@ -46,11 +46,11 @@ def _replaced(body: list[ast.stmt], seen: dict[str, ast.FunctionDef]) -> Iterato
             seen[part.name] = part
         elif isinstance(part, ast.With) or (isinstance(part, ast.If) and isinstance(part.test, ast.Constant) and part.test.value):
             yield from _replaced(part.body, seen)
-        else:
+        elif not isinstance(part, ast.ClassDef):
             branches = [getattr(part, field, []) for field in ("body", "orelse", "finalbody")]
-            branches += [handler.body for handler in getattr(part, "handlers", [])] if not isinstance(part, ast.ClassDef) else []
+            branches += [handler.body for handler in getattr(part, "handlers", [])]
             inside: dict[str, ast.FunctionDef] = {}
-            for branch in [] if isinstance(part, ast.ClassDef) else branches:
+            for branch in branches:
                 known: dict[str, ast.FunctionDef] = {}
                 yield from _replaced(branch, known)
                 inside.update(known)

@@ -35,7 +35,8 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
     func, context = production.original_func, production.context
     where = f"production '{production.name}': "
     _check_brackets(node, func, context)
-    _check_inner(production, node)
+    for line, message in productions_inside(node, lambda name: isinstance(context.get(name), Model)):
+        warn_at(message, func, line)
     known = {*production.variables, *production.assigned}
     if not production.any_bound:
         _check_names(production, known, where)
@@ -60,12 +61,6 @@ def _check_names(production: Production, known: set[str], where: str) -> None:
         if isinstance(part, ast.Name) and part.id not in inside:
             inside.add(part.id)
             warn_at(f"{where}nothing defines '{part.id}'{did_you_mean(part.id, {*known, *production.context})}", func, part.lineno)
-
-
-def _check_inner(production: Production, node: ast.FunctionDef) -> None:
-    """Finds productions that are defined inside another one, which does not call them."""
-    for line, message in productions_inside(node, lambda name: isinstance(production.context.get(name), Model)):
-        warn_at(message, production.original_func, line)
 
 
 @lru_cache(maxsize=16)

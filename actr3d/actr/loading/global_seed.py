@@ -21,8 +21,7 @@ NUMPY = "numpy.random"
 def seed_shared(seed: int | str) -> None:
     """Seeds all shared generators."""
     random.seed(seed)
-    numpy_random = sys.modules.get(NUMPY)
-    if numpy_random is not None:
+    if (numpy_random := _numpy_random()) is not None:
         _seed_numpy(numpy_random, seed)
 
 

@@ -96,7 +96,8 @@ def compile_source(source: str, filename: str) -> CodeType:
             text = (error.text or "").strip()[:LONGEST]
             raise ModelFileError(f"{filename}:{error.lineno or 0}: {error.msg}" + (f": {text}" if text else "")) from None
     except (RecursionError, MemoryError):
-        line = _longest_line(source)
+        lengths = [len(line) for line in source.split("\n")]
+        line = lengths.index(max(lengths)) + 1
         raise ModelFileError(f"{filename}:{line}: something here (the longest line of the file) is nested too deeply for Python") from None
     except ValueError as error:  # a text that no encoding can hold
         raise ModelFileError(f"'{filename}' is not Python source: {error}") from None
@@ -120,8 +121,3 @@ def _compiled(source: str) -> CodeType | None:
 def _print_to(source: str) -> int | None:
     """Returns the line of the first `print >> file, ...` of a text; None if there is none."""
     return print_to(syntax_tree(source)) if re.search(r"\bprint\s*>>", source) else None
-
-
-def _longest_line(source: str) -> int:
-    lengths = [len(line) for line in source.split("\n")]
-    return lengths.index(max(lengths)) + 1

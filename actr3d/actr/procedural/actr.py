@@ -40,11 +40,6 @@ class ACTR(ProductionSystem):
     production_threshold: Extended | Callable[[], float] | None = None
     """The minimum utility for firing: a number, a function without arguments, or None for no minimum."""
 
-    @property
-    def _indifferent(self) -> bool:
-        """Whether utilities are only the productions' own."""
-        return not self._adaptors and not self._own_utility
-
     _weighed: Weighed | None = None
     _process: Event
 
@@ -92,7 +87,7 @@ class ACTR(ProductionSystem):
     def _choose(self, matching: list[Production]) -> Production | None:
         """Returns one of those with the highest utility, or None if that is below the threshold."""
         trace = self.sch.trace
-        if len(matching) == 1 and self._indifferent and self.production_threshold is None:
+        if len(matching) == 1 and not self._adaptors and not self._own_utility and self.production_threshold is None:
             if trace is not None and trace.all:
                 only = matching[0]
                 data = {"utilities": {only.name: only.base_utility}, **self._procedural.by_hand}
@@ -151,10 +146,6 @@ class ACTR(ProductionSystem):
         if trace.all:
             for production in self._productions:
                 trace_utility_parts(self, production, trace)
-
-    def _drawn_names(self) -> list[str]:
-        any_one = self._productions[0] if self._productions else None
-        return [] if any_one is None else [name for name, value in self._utility_parts(any_one).items() if value is None]
 
     def _part_names(self) -> list[str]:
         return ["get_activation"] if self._own_utility else [adaptor.name for adaptor in self._adaptors]

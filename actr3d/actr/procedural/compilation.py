@@ -159,8 +159,10 @@ class PMCompile(ProceduralSubModule):
         key = (pre, post, tuple(sorted(pre_bound.items())), tuple(sorted(post_bound.items())))
         known = self.compiled.get(key)
         if known is not None:
-            if profile_of(self).learn_compiled:
-                self._strengthen(known)
+            if profile_of(self).learn_compiled:  # then it moves towards its first parent's utility
+                for adaptor in utility_modules(agent):
+                    if isinstance(adaptor, PMNew):
+                        adaptor.recreated(known, known.pre)
             return
         made = CompiledProduction(pre, post, len(self.compiled) + 1, self._kept(pre) or [], self.retrieve, pre_bound, post_bound)
         self.compiled[key] = made
@@ -170,9 +172,3 @@ class PMCompile(ProceduralSubModule):
         for adaptor in utility_modules(agent):
             adaptor.create(made, parents=[pre, post])
         add_production(agent, made)
-
-    def _strengthen(self, made: CompiledProduction) -> None:
-        """Moves a rule that was compiled again towards its first parent's utility (ACT-R 7)."""
-        for adaptor in utility_modules(self.parent):
-            if isinstance(adaptor, PMNew):
-                adaptor.recreated(made, made.pre)

@@ -17,15 +17,12 @@ from actr3d.actr.procedural.production_body import MAX_CODES, Body, Scope, compi
 from actr3d.actr.procedural.rebinding import sees_variables, stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
 
+_sees_variables = lru_cache(maxsize=MAX_CODES)(sees_variables)
+
 
 @lru_cache(maxsize=MAX_CODES)
 def _assigned_in(statements: tuple[ast.stmt, ...]) -> frozenset[str]:
     return frozenset(stored_names(statements))
-
-
-@lru_cache(maxsize=MAX_CODES)
-def _sees_variables(statements: tuple[ast.stmt, ...]) -> bool:
-    return sees_variables(statements)
 
 
 class ProductionOwner(Protocol):

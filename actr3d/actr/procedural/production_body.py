@@ -18,12 +18,11 @@ from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from actr3d.actr.kernel.source_code import for_python_actr, source_of, with_filename
-from actr3d.actr.procedural.rebinding import BOUND, SCOPE_BUILTINS, Names, Rebinder, stored_names, used_names
+from actr3d.actr.procedural.rebinding import BOUND, SCOPE_BUILTINS, SCOPES, Names, Rebinder, stored_names, used_names
 from actr3d.errors import ProductionException
 
 Body = Callable[[dict[str, Any]], None]
 BUILTINS = vars(builtins)
-_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
 class Scope(dict[str, Any]):
@@ -131,11 +130,7 @@ def compile_body(
 _CODES: dict[Any, tuple[CodeType, Sequence[str]]] = {}
 MAX_CODES = 10_000
 """The number of bodies whose code is kept."""
-
-
-@lru_cache(maxsize=MAX_CODES)
-def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
-    return used_names(statements)
+_names_of = lru_cache(maxsize=MAX_CODES)(used_names)
 
 
 def _code_of(
@@ -219,7 +214,7 @@ class _Mangler(ast.NodeTransformer):
 def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:
     """Yields a node and those below it that belong to the same function."""
     yield node
-    if not isinstance(node, _SCOPES):
+    if not isinstance(node, SCOPES):
         for child in ast.iter_child_nodes(node):
             yield from _own_nodes(child)
 

@@ -217,14 +217,11 @@ class ProductionSystem(WithParameters, Model):
 
     def _drawn_names(self) -> list[str]:
         """Returns the names of the utility modules whose part is known only when a choice is made."""
-        return []
-
-    def _part_names(self) -> list[str]:
-        """Returns the names of what utilities consist of, besides the productions' own."""
-        return []
+        any_one = self._productions[0] if self._productions else None
+        return [] if any_one is None else [name for name, value in self._utility_parts(any_one).items() if value is None]
 
     def _utility_parts(self, production: Production) -> dict[str, float | None]:
-        """Returns what each of these adds now; None for what is known only when a choice is made."""
+        """Returns what each utility module adds now; None for what is known only when a choice is made."""
         return {}
 
     def _latest_choice(self) -> ConflictSet | None:
@@ -387,8 +384,3 @@ def current_choice(system: ProductionSystem) -> ConflictSet | None:
 def utility_parts(system: ProductionSystem, production: Production) -> dict[str, float | None]:
     """Returns what each utility module adds to a production's utility now; None for what is known only when a choice is made."""
     return system._utility_parts(production)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
-
-
-def utility_part_names(system: ProductionSystem) -> list[str]:
-    """Returns the names of the utility modules of a system."""
-    return system._part_names()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model

@@ -14,7 +14,7 @@ from typing import Any, cast
 BOUND = "__bound__"
 """The name of the bound variables in a compiled body."""
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
-_SCOPES = (*_FUNCTIONS, ast.Lambda, ast.ClassDef)
+SCOPES = (*_FUNCTIONS, ast.Lambda, ast.ClassDef)
 _COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 SCOPE_BUILTINS = frozenset({"dir", "eval", "exec", "locals", "vars"})
 """The builtins that see the variables around their call."""
@@ -54,7 +54,7 @@ class Names:
             self.assigned.update({node.name} if node.name else ())
         elif isinstance(node, ast.MatchMapping):
             self.assigned.update({node.rest} if node.rest else ())
-        elif isinstance(node, _SCOPES):
+        elif isinstance(node, SCOPES):
             self._collect_scope(node)
             return
         for child in ast.iter_child_nodes(node):
@@ -102,7 +102,7 @@ def sees_variables(nodes: Iterable[ast.AST]) -> bool:
         (isinstance(node, ast.Name) and node.id in SCOPE_BUILTINS)
         or sees_variables(
             outside(node)
-            if isinstance(node, _SCOPES)
+            if isinstance(node, SCOPES)
             else [node.generators[0].iter]  # the rest of a comprehension is a scope of its own
             if isinstance(node, _COMPREHENSIONS)
             else ast.iter_child_nodes(node)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import TypeAlias
 
 from actr3d.camera.kernel import SOURCES
 from actr3d.camera.kernel.active_rows import update_active
@@ -18,55 +17,13 @@ from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent, zero
 from actr3d.camera.kernel.upper_envelope import Row, trace_row
-from actr3d.jit import compile_cached, inner_compiled
+from actr3d.jit import compile_cached, compiled_on_demand, inner_compiled
 
 MAX_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""
 
-SetScene: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene], int]
-TraceRows: TypeAlias = Callable[[Array, Array, Topology, EyeScene, Row, Array, Array], int]
-Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene, Row, Array, Array], int]
-
-
-@cache
-def scan() -> Scan:
-    """Returns the compiled function; its first call in a new installation takes seconds.
-
-    Its arguments are: the eye's axes and position, the geoms' positions and rotations, an array of one optics, the geoms, the
-    topology, work arrays for the scene and for a row, the labels of objects, and the output array of extents. It returns the number
-    of extents, or `-1 - geom` if the pose of a geom is not finite.
-    """
-    scene_setter()
-    row_tracer()
-    return compile_cached(_scan, SOURCES)
-
-
-@cache
-def scene_setter() -> SetScene:
-    """Returns the first half of `scan`, compiled: it finds what may be in view."""
-    return compile_cached(set_scene, SOURCES)
-
-
-@cache
-def row_tracer() -> TraceRows:
-    """Returns the second half of `scan`, compiled: it traces the rows of what may be in view."""
-    return compile_cached(_trace_rows, SOURCES)
-
-
-def _scan(
-    eye: Array,
-    place: Array,
-    turn: Array,
-    constants: Array,
-    geoms: Geoms,
-    topology: Topology,
-    scene: EyeScene,
-    row: Row,
-    labels: Array,
-    extents: Records,
-) -> int:
-    failed = set_scene(eye, place, turn, constants, geoms, topology, scene)
-    return failed if failed < 0 else _trace_rows(eye, constants, topology, scene, row, labels, extents)
+scene_setter = compiled_on_demand(SOURCES)(set_scene)
+"""Returns the first half of `scan`, compiled: it finds what may be in view."""
 
 
 def _trace_rows(eye: Array, constants: Array, topology: Topology, scene: EyeScene, row: Row, labels: Array, extents: Records) -> int:
@@ -86,6 +43,39 @@ def _trace_rows(eye: Array, constants: Array, topology: Topology, scene: EyeScen
     find_nearest(row.stretches[0], extents)
     finish(optics, extents, done, row.edges)
     return done
+
+
+row_tracer = compiled_on_demand(SOURCES)(_trace_rows)
+"""Returns the second half of `scan`, compiled: it traces the rows of what may be in view."""
+
+
+@cache
+def scan() -> Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene, Row, Array, Array], int]:
+    """Returns the compiled function; its first call in a new installation takes seconds.
+
+    Its arguments are: the eye's axes and position, the geoms' positions and rotations, an array of one optics, the geoms, the
+    topology, work arrays for the scene and for a row, the labels of objects, and the output array of extents. It returns the number
+    of extents, or `-1 - geom` if the pose of a geom is not finite.
+    """
+    scene_setter()
+    row_tracer()
+    return compile_cached(_scan, SOURCES)
+
+
+def _scan(
+    eye: Array,
+    place: Array,
+    turn: Array,
+    constants: Array,
+    geoms: Geoms,
+    topology: Topology,
+    scene: EyeScene,
+    row: Row,
+    labels: Array,
+    extents: Records,
+) -> int:
+    failed = set_scene(eye, place, turn, constants, geoms, topology, scene)
+    return failed if failed < 0 else _trace_rows(eye, constants, topology, scene, row, labels, extents)
 
 
 @inner_compiled

@@ -19,12 +19,12 @@ from actr3d.experiment.aperture.passing import TURNED, Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas
-from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.parts import Caution, Part, Plot, Section, Table
 from actr3d.experiment.report.reference_means import ReferenceMeans, matched_means, missing, without_failures
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, in_order, rmse_and_r
 
-Parts = list[str | Table | Plot | Caution]
+Parts = list[Part]
 ORIGINAL, GEOMETRY = "original ACT-R 3D", "geometry (baseline)"
 BASELINE = (
     "Baseline: one line of geometry, which any model must beat: the angle at which an ellipse, as wide as the shoulders S and 0.563 S "
@@ -581,7 +581,7 @@ SIDES = {"left": "left", "right": "right", "narrower": "narrower side"}
 def _margins(findings: Findings, frame: Any) -> Parts:
     pd, by, scale = pandas(), findings.by, 100.0 if findings.by == "aperture" else 1.0
     x_label = "aperture [cm]" if by == "aperture" else OF_RATIO
-    parts, panes, of_people = list[str | Table | Plot | Caution](), list[Pane](), list[Any]()
+    parts, panes, of_people = list[Part](), list[Pane](), list[Any]()
     for group in findings.groups:
         for condition in findings.conditions:
             of = frame[(frame["group"] == group) & (frame["condition"] == condition)]

@@ -308,8 +308,8 @@ class Findings:
         return Constraint(number=4, says=says, met=met == {True}, found=text)
 
     def faster_turns_more(self) -> Constraint:
-        """5: fast minus normal below the critical point, by participants."""
-        says = "fast > normal below the critical ratio"
+        """5: fast minus normal at ratios below those that are allowed as critical, by participants."""
+        says = f"fast > normal at ratios below {CRITICAL[0]}"
         if not {"normal", "fast"} <= set(self.conditions):
             return _untested(5, says, "it needs the conditions normal and fast")
         found: list[str] = []
@@ -322,7 +322,9 @@ class Findings:
                 if below:
                     differences.append(mean(below))
             if len(differences) < MIN_FOR_TESTS:
-                return _untested(5, says, "it needs three or more participants in each group, with apertures below the critical ratio")
+                return _untested(
+                    5, says, f"it needs three or more participants in each group, with apertures at ratios below {CRITICAL[0]}"
+                )
             p = above_zero(mean(differences), stdev(differences) / math.sqrt(len(differences)), len(differences) - 1)
             met &= p < 0.05
             found.append(f"{group} {mean(differences):+.1f} degrees (p = {p:.2g})")

@@ -15,7 +15,6 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from actr3d.experiment.report.libraries import matplotlib
-from actr3d.values import shortened
 
 INK, MUTED, GRID, PAPER = "#1b2430", "#5b6675", "#dde2e8", "#fffffe"
 COLOURS = ("#0072b2", "#c44e00", "#007a5e", "#a3528f", "#8a6d00", "#3f7fbf")
@@ -56,7 +55,7 @@ Look = Literal["model", "points", "human", "other", "baseline"]
 """`model`: the experiment of the report; `points`: the same without a line; `human`: people;
 `other`: another experiment or model; `baseline`: what any model must beat."""
 LONGEST_TEXT = 60
-"""The maximum length of a title, tick or label of a figure [characters]; of a longer one, the beginning is shown."""
+"""The maximum length of a title, tick or label of a figure [characters]; of a longer one, beginning and end are shown."""
 CHARACTERS, ROOM_OF_HANDLE = 13, 6
 """How many characters of a legend fit into an inch, and how many take the room of a line with its marker."""
 ROOM_OF_MARKER = 0.025
@@ -124,12 +123,12 @@ def curves_figure(
                 ax.remove()
                 continue
             pane = panes[place]
-            ax.set_title(shortened(pane.title, LONGEST_TEXT))
+            ax.set_title(_short(pane.title))
             _shade(ax, pane)
             for curve in pane.curves:
                 _draw(ax, curve, labels.index(curve.label) if curve.label else None, len(labels))
             if ticks:
-                ax.set_xticks([at for at, _ in ticks], [shortened(text, LONGEST_TEXT) for _, text in ticks])
+                ax.set_xticks([at for at, _ in ticks], [_short(text) for _, text in ticks])
             if place + columns >= len(panes):
                 ax.set_xlabel(x_label)
                 ax.tick_params(labelbottom=True)
@@ -208,7 +207,7 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
                 linewidth=1.8,
                 marker=_marker(number),
                 markersize=5.5,
-                label=shortened(label, LONGEST_TEXT),
+                label=_short(label),
             )
         )
     curves = [curve for pane in panes for curve in pane.curves]
@@ -219,7 +218,7 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
             hollow = look.pop("hollow", False)
             face = PAPER if hollow else INK
             look = {"marker": "o" if sources[source, name] else "D", "markerfacecolor": face, "markeredgecolor": INK, **look}
-            handles.append(line([], [], color=INK, label=shortened(source, LONGEST_TEXT), **look))
+            handles.append(line([], [], color=INK, label=_short(source), **look))
     bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
     handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]
     if handles:
@@ -288,3 +287,8 @@ def inline_svg(text: str, name: str, title: str) -> str:
         return body
     wide = round(float(box[2]) * SCALE)
     return f'<svg viewBox="{box[1]}" style="max-width: {wide}px" role="img" aria-label="{label}">{body[box.end() :]}'
+
+
+def _short(text: str) -> str:
+    """Returns a text, or the beginning and the end of a long one: names often differ at one of them."""
+    return text if len(text) <= LONGEST_TEXT else f"{text[:38]}...{text[-19:]}"

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.experiment.design import plain_text
-from actr3d.experiment.human_data import HumanData, factor_name
+from actr3d.experiment.design import factor_name, plain_text
+from actr3d.experiment.human_data import HumanData
 from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
-from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.parts import Caution, Part, Plot, Section, Table
 from actr3d.experiment.report.reference_means import ReferenceMeans, factors_of, fit_to, matched, missing, ran_at, same_unit, varied_once
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import (
@@ -61,7 +61,7 @@ def what_was_run(results: Results) -> Section:
     rows += [("versions", text) for text in results.versions]
     rows.append(("analysed with", versions()))
     table = Table(name="design", title="Design", frame=pd.DataFrame(rows, columns=["what", "value"]))
-    parts: list[str | Table | Plot | Caution] = [*results.description.split("\n\n")[1:]]
+    parts: list[Part] = [*results.description.split("\n\n")[1:]]
     if results.changes:
         parts.append(f"The description is that of the design as it was written. Changed in this experiment: {', '.join(results.changes)}.")
     parts += [*cautions(results), table]
@@ -137,19 +137,29 @@ def analysis_sections(results: Results, others: Sequence[ReferenceMeans]) -> lis
     for make in find_analyses(results.rows.columns):
         try:
             found += make(results, others)
-        except Exception as error:  # noqa: BLE001 - as in `_measure_section`
-            name, parts = make.__name__, list[str | Table | Plot | Caution]()
+        except Exception as error:  # noqa: BLE001 - as in `_add`
+            name, parts = make.__name__, list[Part]()
             failed = _failed(f"analysis '{name}'", error, parts)
             found.append(Section(title=name.replace("_", " ").capitalize(), parts=parts, failed=failed))
     return found
 
 
-def _failed(what: str, error: Exception, parts: list[str | Table | Plot | Caution]) -> str:
-    """Adds to a section that the rest of it could not be made, and returns why: the error, and the line of the library or of the design."""
+def _add(parts: list[Part], what: str, made: Iterator[Part]) -> str:
+    """Adds parts to a section as they are made: those before an error stay. Returns the error, see `_failed`; "" if there is none."""
+    try:
+        for part in made:
+            parts.append(part)  # noqa: PERF402 - one at a time
+    except Exception as error:  # noqa: BLE001 - it is shown here, and `write_report` raises it when the other sections are written
+        return _failed(what, error, parts)
+    return ""
+
+
+def _failed(what: str, error: Exception, parts: list[Part]) -> str:
+    """Adds to a section that not all of it could be made, and returns why: the error, and the line of the library or of the design."""
     frames = extract_tb(error.__traceback__)
     place = [frame for frame in frames if is_library(frame.filename) or not frame.filename.startswith(PYTHON)][-1]
     why = f"{what}: {failure(error)} ({Path(place.filename).name}, line {place.lineno})"
-    parts.append(Caution(f"The rest of this section could not be made: {why}."))
+    parts.append(Caution(f"Not all of this section could be made: {why}."))
     return why
 
 
@@ -160,7 +170,7 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, re
     people = len({(row["group"], row["participant"]) for row in data.rows}) if not data.published else 0
     kind = "published means" if data.published else f"trials of {people} {'person' if people == 1 else 'people'}"
     count = "1 row" if len(data.rows) == 1 else f"{len(data.rows):,} rows"
-    found: list[str | Table | Plot | Caution] = [f"{data.name}: {count} of {kind}.", *(f"{note}" for note in data.notes)]
+    found: list[Part] = [f"{data.name}: {count} of {kind}.", *(f"{note}" for note in data.notes)]
     if data.published:
         found += [f"Source: {source}" for source in data.sources]
         found.append("Intervals of published means follow from their SD and n (t distribution); means without these have none.")
@@ -183,7 +193,7 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
     different = [*results.specification.differences_from(other.specification), *results.design.differences_from(other.design)]
     what = f"{other.label} (“there”: {other.specification.name}, {len(other.rows):,} trials)"
     text = f"{what} differs from this experiment (“now”) in: {'; '.join(different) or 'nothing that was set'}."
-    found: list[str | Table | Plot | Caution] = [text, *levels_compared(results, other)]
+    found: list[Part] = [text, *levels_compared(results, other)]
     if units := [name for name in results.measures if name in other.measures and not same_unit(results, other, name)]:
         found.append(Caution(f"Not compared, because {other.label} has them in another unit: {', '.join(units)}."))
     if reference is not None and len(fit := fit_to(parts, reference)):
@@ -238,22 +248,21 @@ def measure_sections(parts: Sequence[Results], others: Sequence[ReferenceMeans],
         "with more simulated participants, any difference becomes significant, so read the effect sizes. They are not corrected for the "
         "number of measures."
     )
-    found = [Section(title="All measures", parts=[note, *_outcomes(parts[0])])]
+    texts: list[Part] = [note]
+    failed = [why for name in parts[0].outcomes if (why := _add(texts, f"measure '{name}'", _outcomes(parts[0], name)))]
+    found = [Section(title="All measures", parts=texts, failed="; ".join(failed))]
     return found + [_measure_section(part, name, others, secondary=secondary) for part in parts for name in part.measures]
 
 
-def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
-    """Returns for each measure that is a text how many trials had each, and their shares by the factor on the x axis of figures."""
-    found: list[str | Table | Plot | Caution] = []
-    for name in results.outcomes:
-        by = [key for key in ("group",) if len(results.groups) > 1]
-        column = factor_name(name)
-        rows = results.rows[[*by, name]].fillna({name: "none"}).rename(columns={name: column})
-        if rows[column].nunique() <= MAX_KINDS:
-            counts = in_order(rows.groupby([*by, column], observed=True).size().rename("trials").reset_index(), by, rows)
-            found.append(Table(name=f"counts_{name}", title=f"Trials by {name.replace('_', ' ')}", frame=counts))
-            found += _shares(results, name)
-    return found
+def _outcomes(results: Results, measure: str) -> Iterator[Part]:
+    """Yields how many trials had each text of a measure, and the shares of the texts by the factor on the x axis of figures."""
+    by = [key for key in ("group",) if len(results.groups) > 1]
+    column = factor_name(measure)
+    rows = results.rows[[*by, measure]].fillna({measure: "none"}).rename(columns={measure: column})
+    if rows[column].nunique() <= MAX_KINDS:
+        counts = in_order(rows.groupby([*by, column], observed=True).size().rename("trials").reset_index(), by, rows)
+        yield Table(name=f"counts_{measure}", title=f"Trials by {measure.replace('_', ' ')}", frame=counts)
+        yield from _shares(results, measure)
 
 
 def _shares(results: Results, measure: str) -> Iterator[Table | Plot]:
@@ -284,18 +293,14 @@ def _shares(results: Results, measure: str) -> Iterator[Table | Plot]:
 
 def _measure_section(results: Results, measure: str, others: Sequence[ReferenceMeans], *, secondary: bool) -> Section:
     """Returns the section of a measure, see `measure_sections`; an error ends this section, and no other."""
-    parts, failed = list[str | Table | Plot | Caution](), ""
-    try:
-        for part in _measure_parts(results, measure, others):
-            parts.append(part)  # one at a time: those before an error stay
-    except Exception as error:  # noqa: BLE001 - it is shown here, and `write_report` raises it when the other sections are written
-        failed = _failed(f"measure '{measure}'", error, parts)
+    parts: list[Part] = []
+    failed = _add(parts, f"measure '{measure}'", _measure_parts(results, measure, others))
     human = any(one.look == "human" and len(one.of(measure)) for one in others)
     folded = secondary and not (results.design.kept or human or failed)  # a design that names measures has no others
     return Section(title=results.name_with_unit(measure), parts=parts, folded=folded, failed=failed)
 
 
-def _measure_parts(results: Results, measure: str, others: Sequence[ReferenceMeans]) -> Iterator[str | Table | Plot | Caution]:
+def _measure_parts(results: Results, measure: str, others: Sequence[ReferenceMeans]) -> Iterator[Part]:
     unit, meaning = results.unit(measure), results.columns[measure].meaning if measure in results.columns else ""
     by = [*(["group"] if len(results.groups) > 1 else []), *results.factors]
     means = cell_means(results.rows, measure, by)
@@ -318,9 +323,9 @@ def _measure_parts(results: Results, measure: str, others: Sequence[ReferenceMea
     yield from test_parts(run_tests(results, measure), measure)
 
 
-def test_parts(tests: Tests, measure: str) -> list[str | Table | Plot | Caution]:
+def test_parts(tests: Tests, measure: str) -> list[Part]:
     """Returns tests as parts of a section."""
-    parts: list[str | Table | Plot | Caution] = []
+    parts: list[Part] = []
     if tests.anova is not None:
         note = (
             "One factor within participants at a time, averaged over others; p corrected: Greenhouse-Geisser. Differences: an effect on "

@@ -11,7 +11,7 @@ from typing import Any
 from urllib.parse import quote
 
 from actr3d.experiment.report.figures import inline_svg
-from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.parts import Caution, Part, Plot, Section, Table
 from actr3d.experiment.report.results import name_with_unit
 
 MADE_BY = '<meta name="generator" content="actr3d report">'
@@ -113,7 +113,7 @@ def _section(section: Section, name: str, drawings: Mapping[str, str]) -> str:
     return f'<section id="{name}">\n<h2>{_text(section.title)}</h2>\n{parts}\n</section>'
 
 
-def _part(part: str | Table | Plot | Caution, drawings: Mapping[str, str]) -> str:
+def _part(part: Part, drawings: Mapping[str, str]) -> str:
     match part:
         case str():
             return f"<p>{_with_code(part)}</p>"

@@ -50,12 +50,16 @@ class Caution:
     text: str
 
 
+Part = str | Table | Plot | Caution
+"""A part of a section; a text is a paragraph."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Section:
-    """A part of a report with a title; texts are paragraphs."""
+    """Parts of a report under a title."""
 
     title: str
-    parts: Sequence[str | Table | Plot | Caution]
+    parts: Sequence[Part]
     folded: bool = False
     """Whether the page shows its parts only after a click."""
     failed: str = ""

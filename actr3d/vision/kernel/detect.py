@@ -3,63 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
 from pathlib import Path
-from typing import TypeAlias
 
 from actr3d.camera.kernel import SOURCES
 from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.camera.kernel.screen import row_tangent, tangent_at
-from actr3d.jit import compile_cached, inner_compiled
+from actr3d.jit import compiled_on_demand, inner_compiled
 from actr3d.vision.kernel.gaps import find_gaps, link_gaps
 from actr3d.vision.kernel.openings import set_openings
 from actr3d.vision.kernel.surfaces import set_surfaces
 
-Gaps: TypeAlias = Callable[[Records, Array, Array, float, float, Array, Records, Records], tuple[int, int]]
-Surfaces: TypeAlias = Callable[[Records, Array, Array, float, Array, Records], int]
 
-
-@cache
-def gaps() -> Gaps:
-    """Returns the function that finds openings; the first call of it in a new installation takes seconds.
+@compiled_on_demand(SOURCES, Path(__file__).parent)
+def gaps(
+    extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
+) -> tuple[int, int]:
+    """Finds openings; the first call of it in a new installation takes seconds.
 
     It takes: the extents, an array of one optics, the eye's axes, the step behind a gap, the greatest distance between the edges of one
     opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings:
     `(gaps, 0)` if gaps lack room; if openings do, none is written.
     """
-    return compile_cached(_gaps, SOURCES, Path(__file__).parent)
-
-
-@cache
-def surfaces() -> Surfaces:
-    """Returns the function that finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
-    and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
-    """
-    return compile_cached(_surfaces, SOURCES, Path(__file__).parent)
-
-
-def _gaps(
-    extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
-) -> tuple[int, int]:
-    return _find(extents, optics[0], axes, step, apart, points, gaps, openings)
-
-
-@inner_compiled
-def _find(
-    extents: Records, optics: Record, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
-) -> tuple[int, int]:
-    set_points(extents, optics, axes, points)
-    count = find_gaps(extents, points, optics, axes[1, 2], step, gaps)
+    set_points(extents, optics[0], axes, points)
+    count = find_gaps(extents, points, optics[0], axes[1, 2], step, gaps)
     if count > len(gaps):
         return count, 0
     there = link_gaps(extents, points, gaps, count, apart)
     if there <= len(openings):
-        set_openings(extents, points, gaps, count, optics.rows, openings[:there])
+        set_openings(extents, points, gaps, count, optics[0].rows, openings[:there])
     return count, there
 
 
-def _surfaces(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
+@compiled_on_demand(SOURCES, Path(__file__).parent)
+def surfaces(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
+    """Finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
+    and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
+    """
     set_points(extents, optics[0], axes, points)
     return set_surfaces(extents, points, bearing, surfaces)
 

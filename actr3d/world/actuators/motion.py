@@ -11,7 +11,6 @@ import math
 from collections.abc import Mapping
 
 from actr3d.errors import WorldError
-from actr3d.world.anatomy import Steering
 from actr3d.world.body import MAX_CONTROL, Body, actuator
 from actr3d.world.command_registry import checked_angle, checked_name, checked_number
 from actr3d.world.frames import FULL_TURN
@@ -147,7 +146,8 @@ def steering(body: Body, angle: float) -> None:
     Raises:
         WorldError: If the angle is not a number.
     """
-    car = _car(body)
+    car = body.anatomy.steering
+    assert car is not None
     angle = checked_number(angle, "steering: angle") / car.ratio
     body.motion.targets["steer"] = (_within(body.joint("steer"), angle), car.rate / car.ratio)
 
@@ -299,9 +299,3 @@ def _look(body: Body, left: float, up: float, speed: float | None = None) -> Non
     time = saccade_time(farthest) if speed is None else farthest / checked_number(speed, "gaze: speed", 1e-6)
     for name, angle, turn in zip(("eye_yaw", "eye_pitch"), (to_yaw, to_pitch), turns, strict=True):
         body.motion.targets[name] = (angle, max(turn / time, 1e-6) if time > 0 else MODERATE)
-
-
-def _car(body: Body) -> Steering:
-    car = body.anatomy.steering
-    assert car is not None
-    return car

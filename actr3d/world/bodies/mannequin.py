@@ -290,12 +290,12 @@ class _Builder:
             hips, _ = self.bodies[part]
             weight = 2 * HIPS * person.mass
             hips.explicitinertial, hips.mass, hips.inertia, hips.ipos = True, weight, [weight * person.depth**2] * 3, [0, 0, HIP * tall]
-            for side, sign in zip(SIDES, (1, -1), strict=True):
-                self._walking_leg(part, side, sign * min(0.0955 * tall, person.shoulder_width / 2) - sign * thick, thick)
-            return part
         for side, sign in zip(SIDES, (1, -1), strict=True):
             y = sign * min(0.0955 * tall, person.shoulder_width / 2) - sign * thick
-            self._capsule(part, f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, mass)
+            if person.gait is not None:
+                self._walking_leg(part, side, y, thick)
+            else:
+                self._capsule(part, f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, mass)
         return part
 
     def _walking_leg(self, part: str, side: str, y: float, thick: float) -> None:

@@ -78,15 +78,10 @@ def depth(body: Body, width: int = 320, height: int = 240) -> Picture:
 def _picture(body: Body, kind: Literal["image", "depth"], width: int, height: int) -> Picture:
     width, height = (checked_whole(n, f"{kind}: {what}", 1, MAX_PIXELS) for n, what in ((width, "width"), (height, "height")))
     body.physics.refresh()
-    pixels = _renderer(body.physics).draw(body.eye, kind, width, height)
+    if body.physics.renderer is None:
+        body.physics.renderer = _Renderer(body.physics)
+    pixels = body.physics.renderer.draw(body.eye, kind, width, height)
     return Picture(kind=kind, width=width, height=height, pixels=pixels.tobytes())
-
-
-def _renderer(physics: Physics) -> _Renderer:
-    """Returns the renderer of a world; the first picture makes it."""
-    if physics.renderer is None:
-        physics.renderer = _Renderer(physics)
-    return physics.renderer
 
 
 class _Renderer:

@@ -212,7 +212,7 @@ def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
     named = r"measure 'rt': ZeroDivisionError: division by zero \(test_report\.py, line \d+\)"
     assert re.fullmatch(rf"error: '.*index\.html' is written, but some of its sections are not complete: {named}\n", error), error
     text = html.unescape(page(folder))
-    assert len(re.findall(rf"The rest of this section could not be made: {named}\.", text)) == 1
+    assert len(re.findall(rf"Not all of this section could be made: {named}\.", text)) == 1
     assert len(table(folder, "means_rt")) == len(table(folder, "means_luck")), "what was made before the error is there"
     assert table(folder, "anova_luck")
 
@@ -764,10 +764,11 @@ def test_trials_are_counted_by_the_texts_of_a_measure(tmp_path: Path) -> None:
 
 def test_long_texts_are_shortened_in_figures() -> None:
     label, tick, title = ("x" * 4000, "y" * 4000, "z" * 4000)
-    curves = [Curve(label=label + end, source="model", look="model", x=[0, 1], y=[0, 1]) for end in "ab"]
+    curves = [Curve(label=label + end, source="model", look="model", x=[0, 1], y=[0, 1]) for end in "ab"]  # they differ at the end
     figure = curves_figure([Pane(title=title, curves=curves)], "x", "y", ticks=[(0, tick), (1, "short")])
     drawn = svg(figure)
-    assert [drawn.count(f">{letter * 60}...<") for letter in "xyz"] == [2, 1, 1]
+    assert [drawn.count(f">{'x' * 38}...{'x' * 18}{end}<") for end in "ab"] == [1, 1]
+    assert [drawn.count(f">{letter * 38}...{letter * 19}<") for letter in "yz"] == [1, 1]
     assert ">short<" in drawn
     assert len(png(figure)) > 1000
 
@@ -947,6 +948,23 @@ def speed(results, others):
         ANALYSES.update(before)
 
 
+def test_an_error_in_the_shares_of_a_measure_ends_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def cell_means(rows: Any, measure: str, by: Any) -> Any:
+        return 1 / 0 if measure == "rt" else statistics.cell_means(rows, measure, by)
+
+    def answer(trial: Trial) -> dict[str, Any]:
+        return dict.fromkeys(("rt", "luck"), "yes" if trial.repetition % 2 else "no")
+
+    monkeypatch.setattr(general, "cell_means", cell_means)
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=3)), answer)
+    with pytest.raises(
+        ExperimentError, match=r"not complete: measure 'rt': ZeroDivisionError: division by zero \(test_report\.py, line \d+\)"
+    ):
+        write_report(folder)
+    assert "Not all of this section could be made: measure 'rt': ZeroDivisionError" in html.unescape(page(folder))
+    assert {path.stem for path in (folder / "report" / "tables").iterdir()} >= {"counts_rt", "counts_luck", "shares_luck"}
+
+
 def test_an_error_in_an_analysis_ends_its_own_sections_and_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write_experiment(tmp_path, participants=1)
     own = """
@@ -970,7 +988,7 @@ def speed_of_counting(results, others):
     assert re.search(rf"is written, but some of its sections are not complete: {named}", capsys.readouterr().err)
     text = html.unescape(page(folder))
     assert "Speed of counting" in text
-    assert re.search(rf"The rest of this section could not be made: {named}\.", text)
+    assert re.search(rf"Not all of this section could be made: {named}\.", text)
     assert table(folder, "means_rt")
 
 
