@@ -92,13 +92,17 @@ def compile_cached(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
 
 
 def compiled_on_demand(*sources: Path):
-    """Makes of a function one without arguments, which returns it compiled: `compile_cached` is called for it and `sources` just once."""
+    """Replaces a function `f` by one that returns `f` compiled, so that it is called as `f()(...)`.
+
+    `compile_cached` is called for it and `sources` when it is first needed, and just once.
+    """
 
     def decorate(function: Callable[P, R]):
         @cache
         def compiled() -> Callable[P, R]:
             return compile_cached(function, *sources)
 
+        compiled.__doc__, compiled.__module__ = function.__doc__, function.__module__
         return compiled
 
     return decorate

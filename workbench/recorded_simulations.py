@@ -50,10 +50,12 @@ def simulations_of(recorded: Recorded) -> list[RecordedSimulation]:
     """
     if recorded.facts["kind"] == "simulation":
         facts = facts_of_simulation(recorded, 1)
-        alone = [] if facts is None else [RecordedSimulation(number=1, begin=0, facts=facts)]
-        for state in recorded.states() if alone else ():
-            alone[0].past.add_recorded(state)
-        return alone
+        if facts is None:
+            return []
+        alone = RecordedSimulation(number=1, begin=0, facts=facts)
+        for state in recorded.states():
+            alone.past.add_recorded(state)
+        return [alone]
     found: dict[int, RecordedSimulation] = {}
     for state, time in timed(recorded):
         if not isinstance(state, State):

@@ -205,7 +205,16 @@ class SceneView:
 
 
 class _RunScene:
-    """Draws the scene of one run."""
+    """Draws the scene of one run.
+
+    Args:
+        server: Viser's server.
+        moments: Numbers the states that are shown.
+        facts: The facts of the run; it has a scene.
+        look: Which overlays are shown.
+        panel: Returns viser's own panel for the given apertures.
+        send: Sends a user's command to the session.
+    """
 
     def __init__(
         self,

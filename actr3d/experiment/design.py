@@ -282,10 +282,8 @@ class Design(Configuration):
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
         if isinstance(self.measures, (str, bytes)):
             raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
-        given, columns = [one.name for one in self.kept], self.taken
-        for name in self.factors:
-            if (shown := factor_name(name)) != name and shown in {*self.factors, *given}:
-                raise DesignError(f"Design: '{shown}' is what reports call the factor '{name}'; rename one of them", shown)
+        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}
+        self.check_shown(given)
         for measure in self.kept:
             if given.count(measure.name) > 1:
                 raise DesignError(f"Design.measures: '{measure.name}' is there twice", measure.name)
@@ -299,11 +297,20 @@ class Design(Configuration):
             if name in OWN_NUMBERS:
                 raise DesignError(f"Design: '{name}' is a number of the design itself; rename the parameter", name)
 
-    @cached_property
-    def taken(self) -> frozenset[str]:
-        """The names that no measure can have, because other columns have them in the table of trials or in a report."""
-        grouped = {name for group in self.groups.values() for name in group.parameters}
-        return frozenset({*self.factors, *map(factor_name, self.factors), *self.settings, *grouped, *OWN_COLUMNS})
+    def check_shown(self, measures: Iterable[str]) -> None:
+        """Checks that no column of reports has two meanings, as they add an underscore to some names; see `factor_name`.
+
+        Args:
+            measures: The names of all measures.
+
+        Raises:
+            DesignError: If a column has the name that reports give a factor, a measure, or that which a measure is over.
+        """
+        given = {name for group in self.groups.values() for name in group.parameters} | self.settings.keys()
+        renamed = {*self.factors, *measures, *(one.over for one in self.kept if one.over is not None)}
+        for name in sorted(renamed):
+            if (shown := factor_name(name)) != name and shown in renamed | given:
+                raise DesignError(f"Design: '{shown}' is what reports call '{name}'; rename one of them", shown)
 
     @property
     def kept(self) -> tuple[Measured, ...]:
@@ -462,20 +469,16 @@ class Design(Configuration):
                 of_groups.setdefault(name, {})[group_name] = value
         return {**of_groups, "--trials": self.trials, **self.factors, **self.settings, **own}
 
-    def all_values(self) -> dict[str, Any]:
-        """Returns all values by name, without functions: those of `changeable`, and `Design.model`, `Design.order` and the like."""
-        return {**self.changeable(), **{f"Design.{name}": getattr(self, name) for name in ("model", "measures", "order", "human")}}
-
     def changed_names(self, there: Design) -> list[str]:
-        """Returns the names of the values that differ from those of another design, as in `all_values`."""
-        before, now = there.all_values(), self.all_values()
+        """Returns the names of the values that differ from those of another design, as in `changeable`."""
+        before, now = there.changeable(), self.changeable()
         return [name for name in {**before, **now} if name not in before or name not in now or _key(before[name]) != _key(now[name])]
 
     def differences_from(self, there: Design) -> list[str]:
-        """Returns in words which values differ from those of another design ("there")."""
+        """Returns in words which of the values that `changed` can change differ from those of another design ("there")."""
         found: list[str] = []
         for name in self.changed_names(there):
-            before, now = (repr(given[name]) if name in given else "not set" for given in (there.all_values(), self.all_values()))
+            before, now = (repr(given[name]) if name in given else "not set" for given in (there.changeable(), self.changeable()))
             found.append(f"{name}: {before} there, {now} now")
         return found
 

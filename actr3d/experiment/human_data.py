@@ -4,8 +4,9 @@ Both are CSV files (UTF-8, a line of names, then one row a line). Lines that beg
 groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
 lists them with their units. If the table of trials has numbered columns of a measure, such as `latency_1`, `latency_2`, the measure is one
 column here, `latency`, and what is numbered, such as `block`, is a factor with its own column. A level of a parameter of the model must be
-within its bounds. A factor whose name is that of another column here or in the tables of a report, such as `n`, has an underscore added:
-`n_`. If not all levels of a factor are numbers, all of them are texts: `True`, `none`, `fast`.
+within its bounds. A factor with the name of another column here or in the tables of a report has an underscore added, such as `n_`; these
+names are `value`, `mean`, `sd`, `low`, `high`, `n`, `trials`, `measure`, `unit`, `source`, `model`, `beside`, `end` and `error`. If not all
+levels of a factor are numbers, all of them are texts: `True`, `none`, `fast`.
 An empty cell is a value that is missing. The table of trials of an experiment, `trials.csv`, can be read as trials of people.
 
 **Trials** have the columns

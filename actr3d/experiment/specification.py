@@ -295,13 +295,13 @@ def specify(
     path, chosen = _file_of(name)
     source = _source_of(path)
     marked = _marked(source)
-    if (most := max(marked, key=marked.count, default="")) and marked.count(most) > 1:
-        raise ExperimentError(f"{path}: defines the design '{most}' {marked.count(most)} times; give each another name")
     if not chosen:
-        if len(marked) != 1:
+        if len({*marked}) != 1:
             found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
             raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
         chosen = marked[0]
+    if marked.count(chosen) > 1:
+        raise ExperimentError(f"{path}: defines the design '{chosen}' {marked.count(chosen)} times; give each another name")
     with naming_the_line(source, chosen):
         module = load_quietly(source)
     of_design = design_in(module, chosen, source)
@@ -317,11 +317,11 @@ def specify(
         versions=experiment_versions(),
     )
     experiment, people = Experiment(specification), library_human_data()
-    if different := of_design.changed_names(experiment.written):  # each process loads it again
+    if different := [*of_design.changed_names(experiment.written), *_other_fields(of_design, experiment.written)]:
         with naming_the_line(source, chosen):
             names = ", ".join(different)
-            same = f"{chosen}() must return the same design each time (different: {names}); draw with a seed"
-            raise DesignError(same, different[0].removeprefix("Design."))
+            same = f"{chosen}() must return the same design each time, as each process loads it (different: {names}); draw with a seed"
+            raise DesignError(same, different[0])
     human = experiment.design.human
     if human is not None and human not in people:
         with naming_the_line(source, chosen):
@@ -329,6 +329,15 @@ def specify(
             files = "a file is given to actr3d report --human, or actr3d fit --target"
             raise DesignError(f"Design.human: must name human data of the library (got '{human}'; {files}){hint}", "human")
     return experiment
+
+
+def _other_fields(one: Design, other: Design) -> list[str]:
+    """Returns the names of the fields that differ between two designs, of those that `Design.changed` cannot change."""
+    fields_of = [
+        {"model": of.model, "measures": [asdict(measure) for measure in of.kept], "order": of.order, "human": of.human}
+        for of in (one, other)
+    ]
+    return [name for name, value in fields_of[0].items() if value != fields_of[1][name]]
 
 
 def _as_json(value: Any) -> Any:
@@ -483,7 +492,8 @@ def design_in(module: ModuleType, name: str, source: Source) -> Design:
         try:
             found = known[name]()
         except SystemExit as error:
-            raise DesignError(f"{name}() must return a Design (it ended with {error!r})") from error
+            ended = DesignError(f"{name}() must return a Design (it ended with {error!r})")
+            raise ended.with_traceback(error.__traceback__) from None  # names the line
         if not isinstance(found, Design):
             raise DesignError(f"{name}() must return a Design (returned {found!r})")
     return found

@@ -16,7 +16,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import DesignError, ExperimentError, did_you_mean, followed
-from actr3d.experiment.design import HUGE, Measured, Trial, as_python, why_unstorable
+from actr3d.experiment.design import HUGE, OWN_COLUMNS, Measured, Trial, as_python, why_unstorable
 from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
 from actr3d.output import printing_nothing
 from actr3d.parameter_schema import parameters_of
@@ -154,11 +154,13 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
         if not isinstance(measures, Mapping):
             raise DesignError(f"Design.results: must return measures by name (returned {measures!r})", "results")
         given = cast("Mapping[str, Any]", measures)
+        if not design.kept:
+            design.check_shown(given)
         for measure in design.kept or [Measured(name=name) for name in given]:
             if measure.name not in given:
                 check_name(measure.name, [name for name, value in given.items() if not name.startswith("_") and _is_value(value)])
             for name, value in measure.columns(given[measure.name]).items():
-                if name in trial.columns or name in design.taken or name in kept:
+                if name in trial.columns or name in OWN_COLUMNS or name in kept:
                     raise DesignError(f"measure '{name}': is already a column of the trials; rename it", measure.name)
                 kept[name] = _plain(name, value, measure)
                 experiment.describe_column(name, measure)

@@ -16,6 +16,24 @@ from actr3d.vision.salience import Function, Rule, share, survivors, weigh
 class Search(Reading):
     """A request in progress; `yield` it to wait until it is over."""
 
+    __slots__ = (
+        "again",
+        "begun",
+        "bottom_up",
+        "chosen",
+        "due",
+        "noise",
+        "noticed",
+        "outcome",
+        "perceived",
+        "query",
+        "refused",
+        "seen",
+        "site",
+        "view",
+        "weights",
+        "why",
+    )
     noticed: Sequence[Feature]
     """The features that pass all tests."""
     weights: Sequence[float]

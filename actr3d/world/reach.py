@@ -12,10 +12,20 @@ from mujoco import mjtJoint
 from numpy.typing import NDArray
 
 FREE, BALL, SLIDE = (int(kind) for kind in (mjtJoint.mjJNT_FREE, mjtJoint.mjJNT_BALL, mjtJoint.mjJNT_SLIDE))
-READ = (
-    *("geom_bodyid", "geom_pos", "geom_rbound", "body_pos", "body_parentid", "body_jntadr", "body_jntnum"),
-    *("jnt_type", "jnt_pos", "jnt_dofadr", "jnt_limited", "jnt_range"),
-)
+READ = [
+    "geom_bodyid",
+    "geom_pos",
+    "geom_rbound",
+    "body_pos",
+    "body_parentid",
+    "body_jntadr",
+    "body_jntnum",
+    "jnt_type",
+    "jnt_pos",
+    "jnt_dofadr",
+    "jnt_limited",
+    "jnt_range",
+]
 """What is read of the compiled scene."""
 
 

@@ -462,19 +462,19 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
         (
             "n = 1\nm = n\nfrom actr3d.experiment import *\nfrom random import random\n@design\ndef a():\n"
             "  return Design(measures=['m'],\n    factors={'n': [random(), random()]})\n",
-            r"d\.py:8: a\(\) must return the same design each time \(different: n\); draw with a seed",
+            r"d\.py:8: a\(\) must return the same design each time, as each process loads it \(different: n\); draw with a seed",
         ),
         (
             "n = 1\nfrom actr3d.experiment import *\nfrom random import random\n@design\ndef a():\n"
             "  return Design(\n    measures=[Measured(name='n', meaning=f'{random()}')])\n",
-            r"d\.py:7: a\(\) must return the same design each time \(different: Design\.measures\); draw with a seed",
+            r"d\.py:7: a\(\) must return the same design each time, as each process loads it \(different: measures\); draw with a seed",
         ),
         ("from actr3d.experiment import *\n@design\ndef a(): return 3\n", r"d\.py:3: a\(\) must return a Design \(returned 3\)"),
         (
             "from actr3d.experiment import *\n@design\ndef a(x): pass\n",
             r"d\.py:3: a\(\) must be a function without arguments \(missing .* 'x'\)",
         ),
-        ("from actr3d.experiment import *\n@design\ndef a(): exit(1)\n", r"d\.py:3: a\(\) must return .* ended with SystemExit\(1\)"),
+        ("from actr3d.experiment import *\n@design\ndef a():\n  exit(1)\n", r"d\.py:4: a\(\) must return .* ended with SystemExit\(1\)"),
         (
             "from actr3d.experiment import *\n@design\ndef a():\n  return Design(model='counting.pi')\n",
             r"Design\.model: there is no file 'counting\.pi' beside it or among the library's models.*did you mean 'counting\.py'",
@@ -493,11 +493,24 @@ def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, valu
         ),
         (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(factors={'n': [1, 2]},\n    measures=['n_'])\n",
-            r"d\.py:6: Design: 'n_' is what reports call the factor 'n'; rename one of them",
+            r"d\.py:6: Design: 'n_' is what reports call 'n'; rename one of them",
         ),
         (
             "from actr3d.experiment import *\n@design\ndef a():\n  return Design(factors={'n': [1],\n    'n_': [1]})\n",
-            r"d\.py:5: Design: 'n_' is what reports call the factor 'n'; rename one of them",
+            r"d\.py:5: Design: 'n_' is what reports call 'n'; rename one of them",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n  return Design(factors={'sd': [1]},\n    settings={'sd_': 1})\n",
+            r"d\.py:5: Design: 'sd_' is what reports call 'sd'; rename one of them",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n"
+            "  return Design(\n    factors={'n_': [1]}, measures=[Measured(name='m', over='n')])\n",
+            r"d\.py:5: Design: 'n_' is what reports call 'n'; rename one of them",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n  return Design(\n    factors={'n_': [1]}, measures=['n'])\n",
+            r"d\.py:5: Design: 'n_' is what reports call 'n'; rename one of them",
         ),
         (
             "from actr3d.experiment import *\ntime = 1\n@design\ndef a():\n  return Design(\n    measures='time')\n",

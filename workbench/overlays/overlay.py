@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from mujoco import MjData, MjModel
@@ -45,6 +45,13 @@ class Observed(NamedTuple):
     """Returns the paths that bodies have walked up to now, by body: pieces of positions (x, y) [m], without what they did not walk."""
 
 
+class Drawing(Protocol):
+    """A part of an overlay that is shown and hidden with it."""
+
+    def show(self, visible: bool) -> None:
+        """Shows or hides it."""
+
+
 class Overlay(ABC):
     """Base of all overlays: draws something over the scene for all bodies.
 
@@ -60,8 +67,8 @@ class Overlay(ABC):
     labels: Sequence[dict[str, Any]] = ()
     """Labels that it wants, each with `text`, `place` [m], whether it is about what an agent attends to (`chosen`), and perhaps the ends of
     a measured `line` [m]; each browser places them where they cover nothing."""
-    drawn: Sequence[Any] = ()
-    """Its `Lines` and the like, which can be shown and hidden."""
+    drawn: Sequence[Drawing] = ()
+    """What `switch` shows and hides: its `Lines` and the like."""
 
     @abstractmethod
     def __init__(self, canvas: OverlayCanvas) -> None: ...

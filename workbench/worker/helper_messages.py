@@ -13,7 +13,12 @@ from workbench.worker.messages import Loaded, text_digest
 
 
 class ReportedHelpers(HelperTexts):
-    """Keeps the texts of helper modules, and reports each to the server."""
+    """Keeps the texts of helper modules, and reports each to the server.
+
+    Args:
+        channel: The connection to the server.
+        known: The modules loaded in an earlier run, which are used even if the files have changed.
+    """
 
     def __init__(self, channel: Channel, known: Mapping[str, Sequence[str]]) -> None:
         super().__init__(known)

@@ -159,7 +159,15 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
 
 
 def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: ModelListing, source: str, folder: Path) -> Names:
-    """Returns the names of the things in a program, as far as it has run."""
+    """Returns the names of the things in a program, as far as it has run.
+
+    Args:
+        tops: The models that have been created.
+        bodies: The bodies of the simulation on screen.
+        listing: The description read from its text.
+        source: Its text.
+        folder: The folder of its helper modules.
+    """
     made = names_of(tops, bodies)
     productions = made.productions | {name.rpartition(".")[2] for name in listing.productions}
     hidden = not productions or _has_helpers(source, folder)

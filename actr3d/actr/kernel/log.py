@@ -179,9 +179,18 @@ def log(
         summary: Whether to print the last value of everything at the end.
         directory: The directory of the files; by default named after the model file.
     """
-    given = {"do_screen": screen, "do_html": html, "do_data": data, "do_summary": summary, "directory": directory}
-    if not LOG.locked:
-        vars(LOG).update({name: value for name, value in given.items() if value is not None})
+    if LOG.locked:
+        return log_proxy
+    if screen is not None:
+        LOG.do_screen = screen
+    if html is not None:
+        LOG.do_html = html
+    if data is not None:
+        LOG.do_data = data
+    if summary is not None:
+        LOG.do_summary = summary
+    if directory is not None:
+        LOG.directory = directory
     return log_proxy
 
 

@@ -28,10 +28,23 @@ _LIBRARIES = frozenset({"actr3d", "python_actr", "ccm", "__future__"})
 _PLAIN = (Buffer, Memory, ImaginalModule, Motor, ProceduralSubModule, TextOutput, Timer)
 """Modules that put only chunks from the program's texts into buffers."""
 _UNPREDICTABLE = frozenset(
-    (
-        *("SOSVision", "Vision", "Chunk", "chunk", "dm", "add_adaptor"),
-        *("eval", "exec", "getattr", "setattr", "vars", "globals", "locals", "__dict__", "__import__"),
-    )
+    {
+        "SOSVision",
+        "Vision",
+        "Chunk",
+        "chunk",
+        "dm",
+        "eval",
+        "exec",
+        "getattr",
+        "setattr",
+        "vars",
+        "globals",
+        "locals",
+        "__dict__",
+        "__import__",
+        "add_adaptor",
+    }
 )
 """Names through which chunks can be made or changed in ways that are not analysed here."""
 

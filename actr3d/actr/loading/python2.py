@@ -6,11 +6,35 @@ import ast
 import re
 
 PYTHON_2_NAMES = frozenset(
-    (
-        *("xrange", "raw_input", "unicode", "unichr", "long", "basestring", "cmp", "execfile", "reduce", "file"),
-        *("iteritems", "itervalues", "iterkeys", "has_key", "izip", "imap", "ifilter"),
-        *("cPickle", "cStringIO", "StringIO", "Tkinter", "tkMessageBox", "Queue", "ConfigParser", "urllib2", "sets", "commands"),
-    )
+    {
+        "xrange",
+        "raw_input",
+        "unicode",
+        "unichr",
+        "long",
+        "basestring",
+        "cmp",
+        "execfile",
+        "reduce",
+        "file",
+        "iteritems",
+        "itervalues",
+        "iterkeys",
+        "has_key",
+        "izip",
+        "imap",
+        "ifilter",
+        "cPickle",
+        "cStringIO",
+        "StringIO",
+        "Tkinter",
+        "tkMessageBox",
+        "Queue",
+        "ConfigParser",
+        "urllib2",
+        "sets",
+        "commands",
+    }
 )
 """Names of Python 2 that do not exist in Python 3; a file that compiles may still use them."""
 

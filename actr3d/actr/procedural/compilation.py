@@ -159,7 +159,7 @@ class PMCompile(ProceduralSubModule):
         key = (pre, post, tuple(sorted(pre_bound.items())), tuple(sorted(post_bound.items())))
         known = self.compiled.get(key)
         if known is not None:
-            if profile_of(self).learn_compiled:  # then it moves towards its first parent's utility
+            if profile_of(self).learn_compiled:  # it moves towards its first parent's utility, as in ACT-R 7
                 for adaptor in utility_modules(agent):
                     if isinstance(adaptor, PMNew):
                         adaptor.recreated(known, known.pre)

@@ -226,9 +226,14 @@ class PMPGC(RewardLearning):
             if prod not in known:
                 raise KeyError(f"{type(self).__name__}.set: no production '{prod}'{alternatives(prod, known)}")
             prod = known[prod]
-        for name, value in {"successes": successes, "failures": failures, "time": time, "lock_pgc": lock}.items():
-            if value is not None:
-                setattr(prod, name, value)
+        if successes is not None:
+            prod.successes = successes
+        if failures is not None:
+            prod.failures = failures
+        if time is not None:
+            prod.time = time
+        if lock is not None:
+            prod.lock_pgc = lock
         self._learned(prod)
 
 

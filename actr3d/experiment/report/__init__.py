@@ -4,6 +4,6 @@
 """
 
 from actr3d.experiment.report.analyses import analysis
-from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.parts import Caution, Part, Plot, Section, Table
 
-__all__ = ["Caution", "Plot", "Section", "Table", "analysis"]
+__all__ = ["Caution", "Part", "Plot", "Section", "Table", "analysis"]

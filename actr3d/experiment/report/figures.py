@@ -56,6 +56,8 @@ Look = Literal["model", "points", "human", "other", "baseline"]
 `other`: another experiment or model; `baseline`: what any model must beat."""
 LONGEST_TEXT = 60
 """The maximum length of a title, tick or label of a figure [characters]; of a longer one, beginning and end are shown."""
+END = 20
+"""The characters of that end."""
 CHARACTERS, ROOM_OF_HANDLE = 13, 6
 """How many characters of a legend fit into an inch, and how many take the room of a line with its marker."""
 ROOM_OF_MARKER = 0.025
@@ -291,4 +293,4 @@ def inline_svg(text: str, name: str, title: str) -> str:
 
 def _short(text: str) -> str:
     """Returns a text, or the beginning and the end of a long one: names often differ at one of them."""
-    return text if len(text) <= LONGEST_TEXT else f"{text[:38]}...{text[-19:]}"
+    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - END]}...{text[-END:]}"

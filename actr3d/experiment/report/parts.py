@@ -63,4 +63,4 @@ class Section:
     folded: bool = False
     """Whether the page shows its parts only after a click."""
     failed: str = ""
-    """What could not be made, and the error; the parts are those before it."""
+    """What could not be made, and the error; the parts are those that could."""

@@ -80,11 +80,20 @@ def obstacle(view: View, *, bearing: Annotated[Radians, Ge(0)] = math.pi, speed:
         surfaces = np.empty(most + 1, SURFACE)
         find(extents, view.optics, view.axes, bearing, points, surfaces)
     found: list[Any] = surfaces[: most + 1].tolist()
-    return tuple(_obstacle(speed, numbers) for numbers in found if numbers[1] < math.inf)
+    return tuple(_obstacle(speed, *numbers) for numbers in found if numbers[1] < math.inf)
 
 
-def _obstacle(speed: float | None, record: tuple[Any, ...]) -> Obstacle:
-    label, distance, ahead, aside, lefts, rights, top, bottom = record
+def _obstacle(
+    speed: float | None,
+    label: int,
+    distance: float,
+    ahead: float,
+    aside: float,
+    lefts: Any,
+    rights: Any,
+    top: float,
+    bottom: float,
+) -> Obstacle:
     direction = math.atan2(aside, ahead)
     nearer = 0.0 if speed is None else speed * math.cos(direction)
     return Obstacle(

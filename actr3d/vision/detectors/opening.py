@@ -93,12 +93,23 @@ def opening(view: View, *, step: Annotated[Metres, Ge(0)] = 0.02) -> tuple[Openi
         elif there > len(openings):
             openings = np.empty(there, OPENING)
         else:
-            known = [_opening(numbers) for numbers in openings[:there].tolist()]
+            known = [_opening(*numbers[:SHOWN]) for numbers in openings[:there].tolist()]
             return tuple([one for one in known if one.height > 0])
 
 
-def _opening(record: tuple[Any, ...]) -> Opening:
-    width, deep, top, bottom, ahead, aside, left, right, above, below, cut = record[:SHOWN]
+def _opening(
+    width: float,
+    deep: float,
+    top: float,
+    bottom: float,
+    ahead: float,
+    aside: float,
+    left: int,
+    right: int,
+    above: int,
+    below: int,
+    cut: int,
+) -> Opening:
     return Opening(
         distance=math.hypot(ahead, aside),
         direction=math.atan2(aside, ahead),

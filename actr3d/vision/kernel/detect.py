@@ -16,7 +16,7 @@ from actr3d.vision.kernel.surfaces import set_surfaces
 
 @compiled_on_demand(SOURCES, Path(__file__).parent)
 def gaps(
-    extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
+    extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, found: Records, openings: Records
 ) -> tuple[int, int]:
     """Finds openings; the first call of it in a new installation takes seconds.
 
@@ -25,22 +25,22 @@ def gaps(
     `(gaps, 0)` if gaps lack room; if openings do, none is written.
     """
     set_points(extents, optics[0], axes, points)
-    count = find_gaps(extents, points, optics[0], axes[1, 2], step, gaps)
-    if count > len(gaps):
+    count = find_gaps(extents, points, optics[0], axes[1, 2], step, found)
+    if count > len(found):
         return count, 0
-    there = link_gaps(extents, points, gaps, count, apart)
+    there = link_gaps(extents, points, found, count, apart)
     if there <= len(openings):
-        set_openings(extents, points, gaps, count, optics[0].rows, openings[:there])
+        set_openings(extents, points, found, count, optics[0].rows, openings[:there])
     return count, there
 
 
 @compiled_on_demand(SOURCES, Path(__file__).parent)
-def surfaces(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
+def surfaces(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, found: Records) -> int:
     """Finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
     and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
     """
     set_points(extents, optics[0], axes, points)
-    return set_surfaces(extents, points, bearing, surfaces)
+    return set_surfaces(extents, points, bearing, found)
 
 
 @inner_compiled

@@ -767,8 +767,8 @@ def test_long_texts_are_shortened_in_figures() -> None:
     curves = [Curve(label=label + end, source="model", look="model", x=[0, 1], y=[0, 1]) for end in "ab"]  # they differ at the end
     figure = curves_figure([Pane(title=title, curves=curves)], "x", "y", ticks=[(0, tick), (1, "short")])
     drawn = svg(figure)
-    assert [drawn.count(f">{'x' * 38}...{'x' * 18}{end}<") for end in "ab"] == [1, 1]
-    assert [drawn.count(f">{letter * 38}...{letter * 19}<") for letter in "yz"] == [1, 1]
+    assert [drawn.count(f">{'x' * 40}...{'x' * 19}{end}<") for end in "ab"] == [1, 1]
+    assert [drawn.count(f">{letter * 40}...{letter * 20}<") for letter in "yz"] == [1, 1]
     assert ">short<" in drawn
     assert len(png(figure)) > 1000
 
