@@ -39,3 +39,24 @@ def test_long_words_are_broken_in_dialogs_parameters_and_designs(pages: Callable
     assert page.locator(".new .description").evaluate(WIDER) == []
     for file in (name, path.name, "counter.py"):
         (workbench.folder / file).unlink()
+
+
+IN_ORDER = """async ([name, model]) => {
+  const { nameOf } = await part("runs/wording.js");
+  const text = `The recording «${nameOf({ id: "one", model, made: 0, branched: null, number: 1, label: { name } })}» is kept.`;
+  const box = document.body.appendChild(Object.assign(document.createElement("p"), { textContent: text, dir: "ltr" }));
+  const place = (word) => {
+    const range = document.createRange();
+    range.setStart(box.firstChild, text.indexOf(word));
+    range.setEnd(box.firstChild, text.indexOf(word) + word.length);
+    return range.getBoundingClientRect();
+  };
+  const [before, after, end] = ["recording", "is", "kept"].map(place);
+  box.remove();
+  return before.right <= after.left && after.right <= end.left;
+}"""
+
+
+def test_a_name_that_changes_the_direction_of_text_does_not_reverse_the_sentence_around_it(blank: Page) -> None:
+    for name in ("slow walk", "مشي بطيء", "\u202ewalk", "\u2067walk", "walk \u202d\u202e"):
+        assert blank.evaluate(IN_ORDER, [name, "walk.py"]), ascii(name)
