@@ -19,6 +19,7 @@ import { PANELS } from "./panels.js"; // made by the server: all files of panels
 import { AreaMenu } from "./parts/area_menu.js";
 import { Dialogs } from "./parts/dialog.js";
 import { Icon } from "./parts/icon.js";
+import "./parts/second_click.js";
 import { Splitter } from "./parts/splitter.js";
 import { Tabs } from "./parts/tabs.js";
 import { Toasts } from "./parts/toasts.js";

@@ -92,7 +92,9 @@ class ModelFolder:
         parts = path.split("/")
         if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
             raise FileError("the path of a model file: must be a path with slashes, of at most 400 bytes")
-        if any(part in ("", ".", "..") or part[0] == "." or len(part.encode("utf-8", "replace")) > 200 for part in parts):
+        if any(len(part.encode("utf-8", "replace")) > 200 for part in parts):
+            raise FileError("the path of a model file: each name in it must have at most 200 bytes; many letters have more than one")
+        if any(part in ("", ".", "..") or part[0] == "." for part in parts):
             raise FileError("the path of a model file: must lie inside the models folder, without hidden parts")
         if not path.endswith(".py") or any(unicodedata.category(c)[0] == "C" for c in path) or ":" in path:
             raise FileError("the path of a model file: must end in .py, without control characters and colons")

@@ -7,7 +7,7 @@ import { TIMES, timeOfText } from "../parts/units.js";
 import { agentsOf, nameIn } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
-import { session, state } from "../store.js";
+import { notify, session, state } from "../store.js";
 import { requestThere } from "../timeline/seek.js";
 
 const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
@@ -127,7 +127,8 @@ export async function runUntil() {
     try {
       await requestThere(wanted());
     } catch (error) {
-      if (!isLeft(error) && !closed) problem.value = problemOf(error);
+      if (!isLeft(error) && closed) notify(`Run until: ${error.message}`);
+      else if (!isLeft(error)) problem.value = problemOf(error);
       return isLeft(error);
     }
     return true;

@@ -66,7 +66,11 @@ async function named(title, label, name, action, more, work) {
   for (;;) {
     const given = await asked(title, label, name, action, { ...more, problem });
     const { text, choice } = typeof given === "string" ? { text: given } : given ?? {};
-    if (!text) return null;
+    if (given === null) return null;
+    if (!text) {
+      problem = "enter a name";
+      continue;
+    }
     const taken = name;
     name = text.endsWith(".py") ? text : `${text}.py`;
     if (models.value.some(({ path }) => path === name) && !(title.startsWith("Rename") && name === taken)) {

@@ -7,7 +7,7 @@ import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { plain, Prose } from "../parts/prose.js";
 import { AGAIN, call } from "../server.js";
-import { session } from "../store.js";
+import { notify, session } from "../store.js";
 import { shown, startExperiment } from "./list.js";
 import { durationText, levelsText, readLevels } from "./wording.js";
 
@@ -215,6 +215,7 @@ function estimate(each, trials, workers) {
 
 /** The form of a design, and below it what an experiment of it would be. */
 function Entry({ design, description, usual }) {
+  const foot = useRef(null);
   const starting = useSignal(false);
   const refused = useSignal({ of: "", error: null });
   const { request, problem, trials } = requestOf(design, usual.facts);
@@ -232,7 +233,8 @@ function Entry({ design, description, usual }) {
     try {
       await startExperiment(request);
     } catch (reason) {
-      refused.value = { of: key, error: reason.message };
+      if (foot.current) refused.value = { of: key, error: reason.message };
+      else notify(`The experiment ${request.design.split(":").at(-1)} was not started: ${reason.message}`); // the user has left the form
     }
     starting.value = false;
   }
@@ -243,7 +245,7 @@ function Entry({ design, description, usual }) {
       ${usual.facts ? html`<${Form} design=${design} facts=${usual.facts} wrong=${wrong} />` : null}
     </div>
     ${error ? html`<pre class="trouble" role="alert">${error}</pre>` : null}
-    <div class="foot">
+    <div class="foot" ref=${foot}>
       <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${duration.error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${error && duration.seconds === null ? "" : estimate(duration.seconds, trials, request.workers)}${check.waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
       <${Button} class="primary" disabled=${starting.value || problem !== null || wrong !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}<//>

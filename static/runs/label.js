@@ -7,6 +7,8 @@ import { notify } from "../store.js";
 import { html, signal } from "../vendor/preact.js";
 import { listRuns } from "./list.js";
 
+const TITLE = "Name of the run";
+
 /** Asks for the name, the note and the tags of a run, and stores those that were changed. They are read first, and what another browser
  * has changed meanwhile is shown before it is replaced. */
 export async function labelRun(run) {
@@ -21,6 +23,7 @@ export async function labelRun(run) {
   let before = known.label;
   const values = { ...before };
   const problem = signal(null);
+  let closed = false;
   const Body = () => html`<label class="field">Name <input value=${values.name} maxlength="100" onInput=${(event) => (values.name = event.currentTarget.value)} /></label>
     <label class="field">Tags <input value=${values.tags.join(", ")} placeholder="separated by commas" onInput=${(event) => (values.tags = event.currentTarget.value.split(","))} /></label>
     <label class="field">Note <textarea rows="4" maxlength="2000" onInput=${(event) => (values.note = event.currentTarget.value)}>${values.note}</textarea></label>
@@ -33,6 +36,7 @@ export async function labelRun(run) {
       return true;
     } catch (error) {
       problem.value = error.message;
+      if (closed) notify(`${TITLE}: ${error.message}`);
       const now = error.status === 409 ? await call("GET", path).catch(() => null) : null;
       if (now) {
         before = now.label;
@@ -42,5 +46,7 @@ export async function labelRun(run) {
     }
   };
   const actions = [{ text: "Cancel", value: null }, { text: "Save", value: true, kind: "primary" }];
-  if (await dialog({ title: "Name of the run", body: html`<${Body} />`, actions, check })) await listRuns();
+  const isSaved = await dialog({ title: TITLE, body: html`<${Body} />`, actions, check });
+  closed = true;
+  if (isSaved) await listRuns();
 }

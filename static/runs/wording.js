@@ -32,8 +32,17 @@ export function whenInFull(made) {
   return FULL.format(new Date(1000 * made));
 }
 
+const TURNS = /[\u202a-\u202e\u2066-\u2069]/; // characters that change the direction of the text after them
+
+/** Returns a name without effect on the direction of the text around it. */
+function apart(name) {
+  if (!TURNS.test(name)) return name;
+  const open = name.match(/[\u2066-\u2068]/g)?.length ?? 0;
+  return `\u2068${name}${"\u2069".repeat(open + 1)}`;
+}
+
 /** Returns the name that a user has given a recording, else where it is a branch; recordings of one tree may have the same. */
-const plainText = (run) => run.label?.name || placeText(run);
+const plainText = (run) => apart(run.label?.name ?? "") || placeText(run);
 
 const placeText = ({ branched }) => (branched === null ? "" : `at ${timeText(branched)}`);
 

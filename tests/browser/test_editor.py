@@ -561,3 +561,17 @@ def test_failed_opening_or_saving_is_reported(pages: Callable[..., Page], workbe
     shows(page, ".toast", "the size of a model file must be <= 1,000,000 bytes")
     assert (workbench.folder / "loaded.py").read_text(encoding="utf-8") == source
     page.keyboard.press("Control+z")
+
+
+def test_a_file_without_a_name_is_asked_for_again(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="editor")
+    for action, confirm in (("New model", "Create"), ("Duplicate", "Duplicate"), ("Rename", "Rename")):
+        page.get_by_role("button", name=action, exact=True).click()
+        dialog = page.get_by_role("dialog")
+        field = dialog.get_by_role("textbox")
+        field.fill(" ")
+        dialog.get_by_role("button", name=confirm, exact=True).click()
+        expect(dialog).to_contain_text("enter a name")
+        expect(field).not_to_have_value("")
+        dialog.get_by_role("button", name="Cancel").click()
+        expect(dialog).to_have_count(0)

@@ -730,3 +730,25 @@ def test_an_experiment_that_cannot_be_compared_is_named_as_elsewhere(pages: Call
     page.get_by_label("Compare with").select_option("theirs")
     expect(page.locator("#drawn .problem")).to_have_text(re.compile(rf"^theirs [^ ].* is not compared: {re.escape(refused['error'])}\.$"))
     expect(page.locator("#drawn .point")).to_have_count(2)
+
+
+OUTSIDE = """(panel) => [...panel.querySelectorAll("td, .legend span")].filter((one) => one.checkVisibility()
+    && one.getBoundingClientRect().right > panel.getBoundingClientRect().right + 1).map((one) => one.textContent)"""
+
+
+def test_long_names_of_groups_and_levels_leave_the_rest_in_view(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "long").mkdir()
+    path = write_experiment(workbench.folder / "long", factors=f'{{"n": [1, 2], "mode": ["count", "{"c" * 150}"]}}', trials=1)
+    path.write_text(path.read_text(encoding="utf-8").replace('"all"', f'"{"g" * 100}"'), encoding="utf-8")
+    name = workbench.post("/api/experiments", {"design": "long/counting_design.py:counting", "workers": 1}).json()["id"]
+    page = pages("counting.py", width=853, height=533, tab="experiments")
+    page.locator(f"tr[data-experiment='{name}']").click()
+    expect(page.locator(".tools .state")).to_have_text("finished")
+    panel = page.locator(".experiments")
+    page.get_by_label("Lines", exact=True).select_option("mode")
+    expect(page.locator(".legend span")).to_have_count(2)
+    assert panel.evaluate(OUTSIDE) == []
+    page.get_by_role("button", name="Design", exact=True).click()
+    expect(page.get_by_role("row", name="group ggg")).to_contain_text("2 participants")
+    assert panel.evaluate(OUTSIDE) == []
+    shutil.rmtree(workbench.folder / "long")

@@ -708,3 +708,17 @@ def test_of_a_thousand_recordings_those_are_drawn_that_are_seen(pages: Callable[
     expect(row(page, copies[-1].stem)).to_be_visible()
     for copy in copies:
         copy.unlink()
+
+
+def test_in_a_narrow_panel_each_button_of_the_head_can_be_pressed(pages: Callable[..., Page], workbench: Served, two: list[str]) -> None:
+    page = pages("counting.py", width=500, height=400)
+    page.goto(f"{workbench.url}/?model=counting.py&panel=runs")
+    for width in (500, 320):
+        page.set_viewport_size({"width": width, "height": 400})
+        for column in ("model", "outcome", "end", "time", "size"):
+            page.get_by_role("button", name=f"Sort by {column}").click()
+            expect(page.locator(".runs-table th").filter(has=page.get_by_role("button", name=f"Sort by {column}"))).to_have_attribute(
+                "aria-sort", re.compile("ascending|descending")
+            )
+        expect(row(page, two[0]).locator(".names")).to_be_visible()
+        assert row(page, two[0]).locator(".names").evaluate("names => names.offsetWidth") >= 76

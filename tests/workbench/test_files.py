@@ -322,3 +322,14 @@ def test_the_digest_of_a_file_is_computed_again_only_when_the_file_has_changed(t
     assert digest_of_file(file) is None
     file.unlink()
     assert digest_of_file(file) is None
+
+
+def test_a_name_that_is_too_long_is_said_to_be_too_long(folder: ModelFolder) -> None:
+    for path in ("n" * 198 + ".py", "é" * 100 + ".py", "n" * 201 + "/one.py"):
+        with pytest.raises(
+            FileError, match=r"^the path of a model file: each name in it must have at most 200 bytes; many letters have more than one$"
+        ):
+            folder.locate(path)
+    assert folder.locate("n" * 197 + ".py").name.endswith("n.py")
+    with pytest.raises(FileError, match="must lie inside the models folder, without hidden parts"):
+        folder.locate(".hidden.py")
