@@ -6,6 +6,7 @@ import builtins
 import re
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -27,6 +28,28 @@ from workbench.language.library_words import is_called_by_library
 
 settings.auto_import_modules = []
 settings.allow_unsafe_interpreter_executions = False
+
+_CACHE, _GRAMMAR = import_module("parso.cache"), import_module("parso.grammar")  # jedi's parser
+
+
+def _load_parsed(*given: Any, **named: Any) -> Any:
+    """Returns the parsed text of a file from jedi's folder of them on the disk; None to parse it again.
+
+    A file there may be incomplete: another process is writing it, or was killed while it did. Then pickle raises any kind of error.
+    """
+    try:
+        return _CACHE.load_module(*given, **named)
+    except Exception:  # noqa: BLE001 - see above
+        return None
+
+
+def _keep_parsed(*given: Any, **named: Any) -> None:
+    """Writes a parsed text into that folder, if there is room for it."""
+    with suppress(OSError):
+        _CACHE.try_to_save_module(*given, **named)
+
+
+vars(_GRAMMAR).update(load_module=_load_parsed, try_to_save_module=_keep_parsed)
 
 KINDS = {
     "module": "namespace",

@@ -11,12 +11,14 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from jedi import settings
 
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, call
 from tests.helpers.paths import MODELS
@@ -1254,6 +1256,35 @@ def test_nothing_is_executed(alone: Asked, tmp_path: Path) -> None:
     alone("rename", f"{top}he|lper = 1", "other")
     alone("format", top)
     assert [mark for mark in marks if mark.exists()] == []
+
+
+def _cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:20])
+
+
+def _no_file(path: Path) -> None:
+    path.unlink()
+    path.mkdir()
+
+
+@pytest.mark.parametrize("damage", [_cut, _no_file])
+def test_damaged_files_of_parsed_texts_are_parsed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
+) -> None:
+    monkeypatch.setattr(settings, "cache_directory", str(tmp_path / "cache"))
+    (tmp_path / "beside.py").write_text("def helps(distance):\n    'Measures.'\n", encoding="utf-8")
+    explicit = ExplicitText(ModelText("import beside\nbeside."))
+
+    def completed() -> list[str]:
+        import_module("parso.cache").parser_cache.clear()
+        return [one.label for one in PythonAnswers(tmp_path).complete(explicit, "model.py", len(explicit.text))]
+
+    assert completed() == ["helps"]
+    files = list((tmp_path / "cache").rglob("*.pkl"))
+    assert files
+    for path in files:
+        damage(path)
+    assert completed() == ["helps"]
 
 
 def test_no_compiled_module_is_imported_even_if_it_could_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
