@@ -140,7 +140,7 @@ def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walk
 
 def test_links_and_ids_are_right_for_any_name_of_a_measure(tmp_path: Path) -> None:
     names = ['x" onclick="alert(1)', "a#b", "a b", "50%41", "q?", "rt", "RT", "<i>", "'&amp;"]
-    path = str(write_experiment(tmp_path, participants=3))
+    path = str(write_experiment(tmp_path, participants=2))
     folder = store_rows(tmp_path / "out", path, lambda trial: {name: count(trial)["rt"] + n for n, name in enumerate(names)}, trials=2)
     write_report(folder)
     found = Links()
