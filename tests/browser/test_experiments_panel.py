@@ -736,6 +736,7 @@ OUTSIDE = """(panel) => [...panel.querySelectorAll("td, .legend span")].filter((
     && one.getBoundingClientRect().right > panel.getBoundingClientRect().right + 1).map((one) => one.textContent)"""
 
 
+@pytest.mark.slow
 def test_long_names_of_groups_and_levels_leave_the_rest_in_view(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long").mkdir()
     path = write_experiment(workbench.folder / "long", factors=f'{{"n": [1, 2], "mode": ["count", "{"c" * 150}"]}}', trials=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.experiments import write_experiment
@@ -15,6 +16,7 @@ WIDER = """(place) => [place, ...place.querySelectorAll("*")].filter((one) => on
 """The elements that are narrower than what they contain."""
 
 
+@pytest.mark.slow
 def test_long_words_are_broken_in_dialogs_parameters_and_designs(pages: Callable[..., Page], workbench: Served) -> None:
     name = f"{'n' * 180}.py"
     source = f"text = '{'t' * 300}'\n{(MODELS / 'counting.py').read_text(encoding='utf-8')}"

@@ -710,6 +710,7 @@ def test_of_a_thousand_recordings_those_are_drawn_that_are_seen(pages: Callable[
         copy.unlink()
 
 
+@pytest.mark.slow
 def test_in_a_narrow_panel_each_button_of_the_head_can_be_pressed(pages: Callable[..., Page], workbench: Served, two: list[str]) -> None:
     page = pages("counting.py", width=500, height=400)
     page.goto(f"{workbench.url}/?model=counting.py&panel=runs")
