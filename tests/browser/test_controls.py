@@ -368,8 +368,8 @@ def test_after_a_click_the_keys_belong_to_the_page_and_after_a_key_to_what_has_t
     expect(console).to_have_attribute("aria-selected", "true")
     console.press("Home")  # it is focused without the pointer, as by Tab
     expect(about).to_have_attribute("aria-selected", "true")
-    page.click("#restart")
     before = page.evaluate(RUN)
+    page.click("#restart")
     until(page, lambda: page.evaluate(RUN) not in (None, before) and page.locator("#status").inner_text() == "paused: at its start")
     run = page.evaluate(RUN)
     page.keyboard.press("Space")
