@@ -23,6 +23,8 @@ LONGEST = 10.0
 """Maximum time to read one summary [s]."""
 MAX_READERS = 4
 """Maximum number of workers that read summaries at the same time."""
+_Stamp = tuple[int, ...]
+"""See `database_stamp`."""
 
 
 class Listing:
@@ -32,8 +34,8 @@ class Listing:
         self._recordings = recordings
         self._workers = workers
         self._models = models
-        self._known: dict[str, tuple[tuple[int, ...], Summary]] = {}
-        self._coming: dict[tuple[str, tuple[int, ...]], asyncio.Future[Summary]] = {}
+        self._known: dict[str, tuple[_Stamp, Summary]] = {}
+        self._coming: dict[tuple[str, _Stamp], asyncio.Future[Summary]] = {}
         """The summaries that are being read; all who ask for one in the same state of its file wait for the same result."""
         self._turns = asyncio.Semaphore(MAX_READERS)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -88,7 +90,7 @@ class Listing:
             there[path] = await asyncio.shield(coming)
         return [(path, there[path]) for path in paths]
 
-    async def _read(self, paths: list[Path], stamps: dict[Path, tuple[int, ...]]) -> None:
+    async def _read(self, paths: list[Path], stamps: dict[Path, _Stamp]) -> None:
         """Reads summaries; if a file takes too long or crashes the worker, another worker continues with the next file."""
 
         def found(path: Path, summary: Summary) -> None:
@@ -114,7 +116,7 @@ class Listing:
             self._give_up([(path.name, stamps[path]) for path in left], OSError("the workbench ends"))
             raise
 
-    def _give_up(self, unread: Sequence[tuple[str, tuple[int, ...]]], error: Exception) -> None:
+    def _give_up(self, unread: Sequence[tuple[str, _Stamp]], error: Exception) -> None:
         """Passes an error on to those who wait for these summaries."""
         for key in unread:
             coming = self._coming.pop(key, None)

@@ -226,7 +226,7 @@ def fit(
                 check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
         return found
 
-    def predicted(design: str, data: str) -> HeldOut:
+    def loaded(design: str, data: str) -> HeldOut:
         try:
             experiment = specify(design)
             has = measures_of(experiment)
@@ -244,7 +244,7 @@ def fit(
     named = [given.partition("=") for given in hold_out]
     if twice := [design for design, count in Counter(design for design, _, _ in named).items() if count > 1]:
         raise SettingError(f"--hold-out {twice[0]}: is given twice; give one")
-    held_out = {design: predicted(design, data) for design, _, data in named}
+    held_out = {design: loaded(design, data) for design, _, data in named}
     searched = [Range.from_text(text) for text in ranges]
     for one in searched:
         groups = fitted.design.groups.items()

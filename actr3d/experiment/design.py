@@ -277,12 +277,11 @@ class Design(Configuration):
         total = math.prod(map(len, self.factors.values())) * self.trials * sum(group.participants for group in self.groups.values())
         if total > MAX_TRIALS:
             raise DesignError(f"Design.trials: must give at most {MAX_TRIALS:,} trials in all (got {total:,})", "trials")
-        grouped = {name for group in self.groups.values() for name in group.parameters}
-        for twice in self.settings.keys() & {*self.factors, *grouped}:
+        for twice in self.settings.keys() & {*self.factors, *self.grouped}:
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
         if isinstance(self.measures, (str, bytes)):
             raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
-        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}
+        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *self.grouped, *OWN_COLUMNS}
         self.check_shown(given)
         for measure in self.kept:
             if given.count(measure.name) > 1:
@@ -291,11 +290,16 @@ class Design(Configuration):
                 raise DesignError(f"Design.measures: '{measure.name}' is already a column of the trials; rename it", measure.name)
             if measure.over in columns:
                 raise DesignError(f"Design.measures: '{measure.name}' is over '{measure.over}', which is another column", measure.name)
-        for name in {*self.factors, *self.settings, *grouped}:
+        for name in {*self.factors, *self.settings, *self.grouped}:
             if (name in OWN_COLUMNS and name != "group") or (name == "group" and name in self.factors):
                 raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
             if name in OWN_NUMBERS:
                 raise DesignError(f"Design: '{name}' is a number of the design itself; rename the parameter", name)
+
+    @property
+    def grouped(self) -> list[str]:
+        """The names of the parameters of groups."""
+        return list(dict.fromkeys(name for group in self.groups.values() for name in group.parameters))
 
     def check_shown(self, measures: Iterable[str]) -> None:
         """Checks that no column of reports has two meanings, as they add an underscore to some names; see `factor_name`.
@@ -306,7 +310,7 @@ class Design(Configuration):
         Raises:
             DesignError: If a column has the name that reports give a factor, a measure, or that which a measure is over.
         """
-        given = {name for group in self.groups.values() for name in group.parameters} | self.settings.keys()
+        given = {*self.grouped, *self.settings}
         renamed = {*self.factors, *measures, *(one.over for one in self.kept if one.over is not None)}
         for name in sorted(renamed):
             if (shown := factor_name(name)) != name and shown in renamed | given:
@@ -447,7 +451,6 @@ class Design(Configuration):
         left = dict(values or {})
         own = {name: left.pop(name) for name in OWN_NUMBERS if name in left}
         factors = {name: _levels(left.pop(name), levels) if name in left else levels for name, levels in self.factors.items()}
-        grouped = {name for group in self.groups.values() for name in group.parameters}
         groups = {
             name: replace(
                 group,
@@ -456,7 +459,7 @@ class Design(Configuration):
             )
             for name, group in self.groups.items()
         }
-        settings = {**self.settings, **{name: value for name, value in left.items() if name not in grouped}}
+        settings = {**self.settings, **{name: value for name, value in left.items() if name not in self.grouped}}
         number = self.trials if trials is None else trials
         return replace(self, factors=factors, groups=groups, settings=settings, trials=number, **own)
 
@@ -495,7 +498,7 @@ class Design(Configuration):
             DesignError: If a name is not a parameter of the model, or a value is not allowed.
         """
         known = {parameter.name: parameter for parameter in parameters}
-        given = {**self.settings, **self.factors, **{key: None for group in self.groups.values() for key in group.parameters}}
+        given = {**self.settings, **self.factors, **dict.fromkeys(self.grouped)}
         read: set[str] = set()
         measured = {one.name for one in self.kept}
         drawn = any(isinstance(value, Distribution) for value in self.settings.values())

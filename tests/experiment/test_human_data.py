@@ -13,6 +13,7 @@ import pytest
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment import human_data
+from actr3d.experiment.design import RESERVED
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.human_data import SHOWN, HumanFile, Schema, library_human_data
 from actr3d.experiment.specification import library_designs, specify
@@ -226,3 +227,7 @@ def test_the_librarys_designs_name_data_that_follow_the_schema() -> None:
     data = HumanFile(known["warren_whang_1987"]).read(Schema(groups=[*design.groups], factors=factors, measures=["speed_m_s"]))
     assert [row["mean"] for row in data.rows] == [1.29, 1.61, 1.28, 1.77]
     assert "not found as numbers" in data.notes[0]
+
+
+def test_the_manual_lists_the_names_that_have_an_underscore_added() -> None:
+    assert [name for name in RESERVED if f"`{name}`" not in (human_data.__doc__ or "")] == []

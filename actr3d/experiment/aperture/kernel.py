@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 
 import actr3d.world.kernel
-from actr3d.jit import compile_cached
+from actr3d.jit import compiled_on_demand
 from actr3d.world.kernel import BOX, SPHERE, Array, extent
 
 END, DURATION, BEFORE, ANGLE, LOGGED, TURNED, ENTERED, LEFT, RIGHT = range(9)
@@ -16,26 +14,8 @@ END, DURATION, BEFORE, ANGLE, LOGGED, TURNED, ENTERED, LEFT, RIGHT = range(9)
 COLUMNS = RIGHT + 1
 
 
-@cache
-def take_sample() -> Callable[..., float]:
-    """Returns the compiled function that measures a body before a wall and writes a row of samples, with NaN as LEFT and RIGHT.
-
-    Its arguments:
-
-    - table (n, COLUMNS), row: the samples, and the number of the one that is written;
-    - end, ago: the time of the joints, and by how much they are ahead of the positions [s];
-    - axis, left, right (3,): the positions of the body's axis and of its shoulders [m];
-    - qpos, qvel: the positions and speeds of all joints;
-    - joints (k, 2), shares (k,): the indices in these of the joints that turn the shoulders, and by how much each of them turns them;
-    - gait (m,), gait_shares (m,): what gait adds to joints, and by how much each of these turns the shoulders;
-    - wall_x, wall_y, ahead_x, ahead_y: the middle of the wall [m], and the direction through it.
-
-    It returns the distance of the axis before the wall [m].
-    """
-    return compile_cached(_take_sample, Path(__file__))
-
-
-def _take_sample(
+@compiled_on_demand(Path(__file__))
+def take_sample(
     table: Array,
     row: int,
     end: float,
@@ -54,6 +34,20 @@ def _take_sample(
     ahead_x: float,
     ahead_y: float,
 ) -> float:
+    """Measures a body before a wall and writes a row of samples, with NaN as LEFT and RIGHT.
+
+    Its arguments:
+
+    - table (n, COLUMNS), row: the samples, and the number of the one that is written;
+    - end, ago: the time of the joints, and by how much they are ahead of the positions [s];
+    - axis, left, right (3,): the positions of the body's axis and of its shoulders [m];
+    - qpos, qvel: the positions and speeds of all joints;
+    - joints (k, 2), shares (k,): the indices in these of the joints that turn the shoulders, and by how much each of them turns them;
+    - gait (m,), gait_shares (m,): what gait adds to joints, and by how much each of these turns the shoulders;
+    - wall_x, wall_y, ahead_x, ahead_y: the middle of the wall [m], and the direction through it.
+
+    It returns the distance of the axis before the wall [m].
+    """
     before = (wall_x - axis[0]) * ahead_x + (wall_y - axis[1]) * ahead_y
     dx, dy = left[0] - right[0], left[1] - right[1]
     angle = 0.0
@@ -71,17 +65,8 @@ def _take_sample(
     return before
 
 
-@cache
-def least_distances() -> Callable[..., None]:
-    """Returns the function that computes lower bounds of the distances of some geoms from a box [m], and puts the geoms in their order.
-
-    Its arguments are: the geoms (n,); the types, sizes, positions and rotations of all geoms as in MuJoCo, and the radii of the balls
-    around them; the position (3,), rotation (9,) and size (3,) of the box; and room for the ordered geoms (n,) and their bounds (n,).
-    """
-    return compile_cached(_least_distances, Path(__file__), Path(actr3d.world.kernel.__file__))
-
-
-def _least_distances(
+@compiled_on_demand(Path(__file__), Path(actr3d.world.kernel.__file__))
+def least_distances(
     geoms: Array,
     types: Array,
     sizes: Array,
@@ -94,6 +79,11 @@ def _least_distances(
     ordered: Array,
     bounds: Array,
 ) -> None:
+    """Computes lower bounds of the distances of some geoms from a box [m], and puts the geoms in their order.
+
+    Its arguments are: the geoms (n,); the types, sizes, positions and rotations of all geoms as in MuJoCo, and the radii of the balls
+    around them; the position (3,), rotation (9,) and size (3,) of the box; and room for the ordered geoms (n,) and their bounds (n,).
+    """
     for number, geom in enumerate(geoms):
         x, y, z = positions[geom, 0] - at[0], positions[geom, 1] - at[1], positions[geom, 2] - at[2]
         squares, bound = 0.0, -math.inf

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,7 +157,7 @@ class Passage:
         rows = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
         stepping, added = self._body.hold.added_by_gait
         gait = added, np.array([hinges.get(name, 0.0) for name in stepping])
-        self._read = self._axis, *shoulders, data.qpos, data.qvel, *rows, *gait, *middle
+        self._read: tuple[Any, ...] = self._axis, *shoulders, data.qpos, data.qvel, *rows, *gait, *middle
         """What `take_sample` reads."""
         self._mass = float(model.body_subtreemass[self._body.root])
         x, y, _ = self._axis.tolist()

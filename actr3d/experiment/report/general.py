@@ -104,7 +104,7 @@ def cautions(results: Results) -> list[Caution]:
 
 def _failed_cells(results: Results) -> str:
     """Returns sentences that name the cells in which trials failed, and say what that means for their means."""
-    by = [*(["group"] if len(results.groups) > 1 else []), *(name for name in results.factors if name in results.failures)]
+    by = [*results.by_group, *(name for name in results.factors if name in results.failures)]
     means = " What is left may be the easier ones: read its means and tests with care. "
     means += "They are not compared with other means."
     if not by:
@@ -256,7 +256,7 @@ def measure_sections(parts: Sequence[Results], others: Sequence[ReferenceMeans],
 
 def _outcomes(results: Results, measure: str) -> Iterator[Part]:
     """Yields how many trials had each text of a measure, and the shares of the texts by the factor on the x axis of figures."""
-    by = [key for key in ("group",) if len(results.groups) > 1]
+    by = results.by_group
     column = factor_name(measure)
     rows = results.rows[[*by, measure]].fillna({measure: "none"}).rename(columns={measure: column})
     if rows[column].nunique() <= MAX_KINDS:
@@ -272,7 +272,7 @@ def _shares(results: Results, measure: str) -> Iterator[Table | Plot]:
     if layout is None or layout.x == "group" or len(texts) < 2:
         return
     x, column, title = layout.x, factor_name(measure), f"Shares of each {measure.replace('_', ' ')} by {layout.x.replace('_', ' ')}"
-    by = [*(["group"] if len(results.groups) > 1 else []), x]
+    by = [*results.by_group, x]
     of = {text: cell_means(rows.assign(**{measure: (rows[measure] == text) * 1.0}), measure, by) for text in texts}
     levels: dict[str, Sequence[Any]] = {**results.factors, column: texts}
     frame = in_order(pandas().concat([means.assign(**{column: text}) for text, means in of.items()]), by, rows)
@@ -302,7 +302,7 @@ def _measure_section(results: Results, measure: str, others: Sequence[ReferenceM
 
 def _measure_parts(results: Results, measure: str, others: Sequence[ReferenceMeans]) -> Iterator[Part]:
     unit, meaning = results.unit(measure), results.columns[measure].meaning if measure in results.columns else ""
-    by = [*(["group"] if len(results.groups) > 1 else []), *results.factors]
+    by = [*results.by_group, *results.factors]
     means = cell_means(results.rows, measure, by)
     means = means.assign(measure=measure, unit=unit)[[*by, "measure", "unit", "mean", "sd", "low", "high", "n", "trials"]]
     lost = int(results.rows[measure].isna().sum())
@@ -360,11 +360,10 @@ def layout_of(results: Results) -> Layout | None:
     there is nothing to lay out."""
     factors = results.factors
     order = sorted(factors, key=lambda name: (name not in results.numbers, isinstance(factors[name][0], str), -len(factors[name])))
-    grouped = ["group"] if len(results.groups) > 1 else []
     left = [*order[1:]] if order else []
     if not order:
-        return Layout(x="group", curves=None, panes=(), averaged=()) if grouped else None
-    curves = "group" if grouped else left.pop(0) if left else None
+        return Layout(x="group", curves=None, panes=(), averaged=()) if results.by_group else None
+    curves = "group" if results.by_group else left.pop(0) if left else None
     panes: list[str] = []
     while left and np.prod([len(factors[name]) for name in [*panes, left[0]]]) <= MAX_PANES:
         panes.append(left.pop(0))

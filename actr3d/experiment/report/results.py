@@ -73,6 +73,11 @@ class Results:
         """The names of the groups."""
         return list(self.design.groups)
 
+    @property
+    def by_group(self) -> list[str]:
+        """The column of groups, as a key of tables that distinguish them; empty for a single group."""
+        return ["group"] if len(self.groups) > 1 else []
+
     def unit(self, column: str) -> str:
         """Returns the unit of a column; empty if it has none, or none is known."""
         known = self.columns.get(column)
