@@ -34,9 +34,6 @@ BLOB = 1_000_000
 """The approximate size of a row of states [bytes]."""
 MAX_EVENTS = 10_000
 """The maximum number of events in a row."""
-BLOCK = 32
-"""The number of events that are converted to JSON at once: one that JSON cannot represent slows down its block alone."""
-
 MARK_BYTES = 4 * 8
 """The size of the marks of a state [bytes]."""
 
@@ -243,7 +240,7 @@ class Writer:
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
             return
-        rows = [(part, _to_json(part)) for part in _parts(events, MAX_EVENTS)]
+        rows = [(part, _to_json(part, _converted)) for part in _parts(events, MAX_EVENTS)]
         self._transact(self._insert_all, rows, states, facts, commands, answers)
 
     def _insert_all(
@@ -257,7 +254,7 @@ class Writer:
         for part, text in events:
             self._insert("events", len(part), len(part), text)
         for some in _parts(answers, MAX_EVENTS):
-            self._insert("answers", len(some), len(some), json.dumps([plain_answer(answer) for answer in some]))
+            self._insert("answers", len(some), len(some), _to_json([plain_answer(answer) for answer in some], json.dumps))
         for row in _parts(states, max(1, BLOB // len(states[0].data)) if states else 1):
             data = b"".join([state.data for state in row])
             marks = array("q", [mark for state in row for mark in (state.run, state.tick, state.events, len(state.data))]).tobytes()
@@ -375,14 +372,11 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
     return [things[start : start + most] for start in range(0, len(things), most)]
 
 
-def _to_json(events: list[TraceEvent]) -> str:
-    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
-    return f"[{', '.join(plain_to_json(block, _one_by_one)[1:-1] for block in _parts(events, BLOCK))}]"
-
-
-def _one_by_one(events: list[TraceEvent]) -> str:
-    return f"[{', '.join(plain_to_json(event, _converted) for event in events)}]"
+def _to_json(items: Sequence[Any], otherwise: Callable[[Any], str]) -> str:
+    """Returns plain items as one JSON list; `otherwise` converts those that JSON cannot represent."""
+    return f"[{','.join([plain_to_json(item, otherwise) for item in items])}]"
 
 
 def _converted(event: TraceEvent) -> str:
+    """Returns an event as JSON; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
     return plain_to_json([event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]])

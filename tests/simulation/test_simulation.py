@@ -9,8 +9,10 @@ import time
 import tracemalloc
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from datetime import date
 from functools import partial
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -21,9 +23,10 @@ from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SchedulerError, SimulationError, WorldError
+from actr3d.recording import Recorded
 from actr3d.simulation import Glimpse, Simulation, agents, timeline
 from actr3d.simulation.agents import Environment
-from actr3d.trace import Trace
+from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Body, Floor, Mannequin, Scene, Wall, World
 from actr3d.world.body import SENSORS, sensor
 from tests.helpers.small_agents import near
@@ -471,6 +474,29 @@ def test_a_result_that_is_not_of_a_dataclass_is_an_error_that_names_the_measure(
     simulation.measure(Returned(returned))
     with pytest.raises(SimulationError, match=r"^Returned\.result: must return an object of a dataclass \(returned "):
         simulation.result()
+
+
+@dataclass
+class Judged:
+    """A result that JSON cannot represent."""
+
+    kinds: set[int]
+    since: date
+
+
+def test_a_result_that_json_cannot_represent_is_recorded_as_it_is_traced(tmp_path: Path) -> None:
+    simulation = Simulation(Scene(parts=(Floor(),)))
+    simulation.measure(Returned(Judged({2, 1}, date(2026, 1, 31))))
+    heard: list[TraceEvent] = []
+    simulation.traced()
+    simulation.listen(heard.append)
+    with simulation.record(tmp_path / "run"):
+        simulation.run(0.02)
+        simulation.conclude()
+    with Recorded(tmp_path / "run") as recorded:
+        results = [event for event in recorded.events() if event.kind == "result"]
+    assert [event.data for event in results] == [event.data for event in heard if event.kind == "result"]
+    assert results[0].data == {"kinds": [1, 2], "since": "datetime.date(2026, 1, 31)"}
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

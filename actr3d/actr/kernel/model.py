@@ -311,11 +311,11 @@ class Model(TreeNode):
 
         Args:
             kind: The kind of event. It need not be registered; `actr3d.trace_kinds.trace_kind` adds its meaning, and its text on pages.
-            data: Its data; plain values, lists and dicts.
+            data: Its data; what is neither a plain value nor a list or dict of these is recorded by its name.
         """
         trace = self.sch.trace
         if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, kind, data)
+            trace.emit(self.sch.now_us, self._path, kind, {key: traceable(value) for key, value in data.items()})
 
     def _trace_state(self, trace: Trace) -> None:
         """Records the current value of every attribute, so that a trace that starts late is complete from its start."""
