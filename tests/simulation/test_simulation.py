@@ -452,6 +452,19 @@ def test_errors_say_what_is_wrong(wrong: Callable[[Simulation], object], message
         wrong(driving())
 
 
+def test_a_port_that_joins_another_agent_asks_that_agents_body() -> None:
+    simulation = Simulation(scene_of("first", "second"), {name: with_port(AGENTS.Idle) for name in ("first", "second")})
+    simulation.run(0.01)
+    agents_here = simulation.timeline.lockstep.agents
+    first, second = (getattr(agents_here.environment, name) for name in ("first", "second"))
+    port = first.body
+    port.get("pose")
+    port.parent = None
+    second.borrowed = port
+    port.get("pose")
+    assert [request.body for request in agents_here.outbox] == ["first", "second"]
+
+
 class Returned:
     """A measure that returns a given result."""
 
