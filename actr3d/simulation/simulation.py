@@ -158,7 +158,8 @@ class Simulation:
         """Runs the agents for one period, after carrying out the commands that other threads have submitted.
 
         Raises:
-            SimulationError: If the last tick has had no tock, or has failed; if this is another thread, or an observer.
+            SimulationError: If the last tick has had no tock, or has failed; if this is another thread, an observer, or what an agent or
+                a body does.
             Exception: What an agent raises.
         """
         self._enter()
@@ -297,6 +298,11 @@ class Simulation:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
         if self._observers.looking:
             raise SimulationError("observers, listeners and `until` cannot step or change the simulation")
+        if self.timeline.running:
+            raise SimulationError(
+                "what an agent or a body does cannot run or change the simulation; an agent ends the run with self.stop(), and lets time "
+                "pass with yield"
+            )
 
     # -- commands
 

@@ -379,7 +379,8 @@ class Model(TreeNode):
                 queued for that time come first.
 
         Raises:
-            SchedulerError: If there is an endless loop in which no time passes, or something cannot be waited for.
+            SchedulerError: If there is an endless loop in which no time passes, or something cannot be waited for; if it is part of a
+                simulation, which alone runs its agents.
             Exception: What a listener of the trace has raised.
         """
         if not self._converted:
@@ -387,6 +388,11 @@ class Model(TreeNode):
             for prepare in BEFORE_FIRST_RUN:
                 prepare(self)
         sch = self.sch
+        if sch.in_lockstep:
+            raise SchedulerError(
+                f"'{self.name}' is part of a simulation, which runs its agents in lockstep with their bodies: call run of the Simulation; "
+                "to let time pass in an agent, yield a number of seconds"
+            )
         if func is not None:
             sch.add(func)
         if sch.trace is None:
