@@ -14,7 +14,7 @@ from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.noise import logistic_noise
-from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, checked_number, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ChunkError, ParameterError
 
@@ -187,6 +187,7 @@ class DMBaseLevel(MemorySubModule):
         self._limit = value
 
     def create(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
+        _check_reference(time, baselevel)
         # `creation` and `first` are both kept, because the profile is not known yet for a chunk that is added in a class's body.
         chunk.creation = self.now()
         chunk.first = self.now() - time
@@ -196,6 +197,7 @@ class DMBaseLevel(MemorySubModule):
             chunk.baselevel = baselevel
 
     def merge(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
+        _check_reference(time, baselevel)
         at = self.now() - time
         chunk.first = min(chunk.first, at)
         chunk.times.append(at)
@@ -239,6 +241,18 @@ class DMBaseLevel(MemorySubModule):
         return math.log(total) if total > 0 else -math.inf
 
 
+def _check_reference(time: Any, baselevel: Any) -> None:
+    """Checks what `memory.add` is given for the base level.
+
+    Raises:
+        ParameterError: If the time or the base level is not a number.
+    """
+    if time != 0:
+        checked_number(time, "memory.add: time")
+    if baselevel is not None and baselevel != "calculate":
+        checked_number(baselevel, "memory.add: baselevel", infinite=True)
+
+
 def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
     """Returns the sum over references whose times are not kept, as if they were spread evenly.
 
@@ -276,10 +290,10 @@ class DMFixed(MemorySubModule):
         self.default = default
 
     def create(self, chunk: Any, fixed: float | None = None, **keys: Any) -> None:
-        chunk.fixed = self.default if fixed is None else fixed
+        chunk.fixed = self.default if fixed is None else checked_number(fixed, "memory.add: fixed", infinite=True)
 
     def merge(self, chunk: Any, fixed: float = 0, **keys: Any) -> None:
-        chunk.fixed += fixed
+        chunk.fixed += checked_number(fixed, "memory.add: fixed", infinite=True)
 
     def activation(self, chunk: Any) -> float:
         return getattr(chunk, "fixed", self.default)
