@@ -6,6 +6,7 @@ Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's act
 from __future__ import annotations
 
 import math
+from numbers import Real
 from random import Random
 from typing import Any, Final, Protocol, cast
 
@@ -245,12 +246,23 @@ def _check_reference(time: Any, baselevel: Any) -> None:
     """Checks what `memory.add` is given for the base level.
 
     Raises:
-        ParameterError: If the time or the base level is not a number.
+        ParameterError: If the time is not a finite number, or the base level not a number.
     """
     if time != 0:
         checked_number(time, "memory.add: time")
     if baselevel is not None and baselevel != "calculate":
-        checked_number(baselevel, "memory.add: baselevel", infinite=True)
+        _amount(baselevel, "baselevel")
+
+
+def _amount(value: Any, name: str) -> Any:
+    """Returns what `memory.add` is given for a part of the activation; nan is a number here, about which a request warns.
+
+    Raises:
+        ParameterError: If it is not a number.
+    """
+    if not isinstance(value, Real):
+        raise ParameterError(f"memory.add: {name}: must be a number (got {value!r})")
+    return value
 
 
 def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
@@ -290,10 +302,10 @@ class DMFixed(MemorySubModule):
         self.default = default
 
     def create(self, chunk: Any, fixed: float | None = None, **keys: Any) -> None:
-        chunk.fixed = self.default if fixed is None else checked_number(fixed, "memory.add: fixed", infinite=True)
+        chunk.fixed = self.default if fixed is None else _amount(fixed, "fixed")
 
     def merge(self, chunk: Any, fixed: float = 0, **keys: Any) -> None:
-        chunk.fixed += checked_number(fixed, "memory.add: fixed", infinite=True)
+        chunk.fixed += _amount(fixed, "fixed")
 
     def activation(self, chunk: Any) -> float:
         return getattr(chunk, "fixed", self.default)

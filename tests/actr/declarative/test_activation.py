@@ -259,11 +259,11 @@ def test_discarded_times_cannot_be_used_again() -> None:
     ("module", "given"),
     [
         (DMBaseLevel, {"baselevel": "2"}),
-        (DMBaseLevel, {"baselevel": math.nan}),
+        (DMBaseLevel, {"baselevel": [1]}),
         (DMBaseLevel, {"time": "2"}),
         (DMBaseLevel, {"time": math.inf}),
         (DMFixed, {"fixed": [1]}),
-        (DMFixed, {"fixed": math.nan}),
+        (DMFixed, {"fixed": "2"}),
     ],
 )
 def test_an_added_chunk_takes_numbers_only(module: Any, given: dict[str, Any], again: bool) -> None:
