@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from actr3d.actr.kernel.run_limits import RunLimits
@@ -69,6 +70,11 @@ class Lockstep:
         """Whether it cannot continue from here: a tick is incomplete."""
         return self._phase != "ready"
 
+    @property
+    def running(self) -> bool:
+        """Whether its agents or bodies are doing something at this moment."""
+        return self._phase == "running"
+
     def fail(self) -> None:
         """Prevents the run from continuing from here, because the present is not what it should be."""
         self._phase = "failed"
@@ -105,8 +111,7 @@ class Lockstep:
         self._expect("ready", "tick")
         if self._limits is not None and not self.may_tick():
             self._limits.refuse(self._end)
-        self._phase = "failed"
-        with self._stdout:
+        with self._within_tick(), self._stdout:
             self.agents.run(self._period)
         self._phase = "ticked"
 
@@ -121,24 +126,34 @@ class Lockstep:
             Exception: What a body raises; a note names the modeller's line.
         """
         self._expect("ticked", "tock")
-        self._phase = "failed"
         world, outbox = self._world, self.agents.outbox
         questions: list[Request] = []
-        if outbox:
-            for request in outbox:
-                if request.reading is None:
-                    _ask(request, world.bodies[request.body].set)
-                else:
-                    questions.append(request)
-            outbox.clear()
-        world.step(self._steps)
         answers: tuple[Any, ...] = ()
-        if questions:
-            answers = tuple(_ask(request, world.bodies[request.body].get) for request in questions)
-            self._answer(questions, answers)
+        with self._within_tick():
+            if outbox:
+                for request in outbox:
+                    if request.reading is None:
+                        _ask(request, world.bodies[request.body].set)
+                    else:
+                        questions.append(request)
+                outbox.clear()
+            world.step(self._steps)
+            if questions:
+                answers = tuple(_ask(request, world.bodies[request.body].get) for request in questions)
+                self._answer(questions, answers)
         self.ticks += 1
         self._phase = "ready"
         return answers
+
+    @contextmanager
+    def _within_tick(self) -> Generator[None]:
+        """Runs a part of a tick; a run in which it fails cannot continue."""
+        self._phase = "running"
+        try:
+            yield
+        except BaseException:
+            self._phase = "failed"
+            raise
 
     def repeat_tick(self, answers: tuple[Any, ...]) -> None:
         """Repeats a known tick with its answers, without its physics.
