@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.kernel.run_limits import RunLimits
@@ -111,8 +110,13 @@ class Lockstep:
         self._expect("ready", "tick")
         if self._limits is not None and not self.may_tick():
             self._limits.refuse(self._end)
-        with self._within_tick(), self._stdout:
-            self.agents.run(self._period)
+        self._phase = "running"
+        try:
+            with self._stdout:
+                self.agents.run(self._period)
+        except BaseException:
+            self.fail()
+            raise
         self._phase = "ticked"
 
     def tock(self) -> tuple[Any, ...]:
@@ -126,34 +130,32 @@ class Lockstep:
             Exception: What a body raises; a note names the modeller's line.
         """
         self._expect("ticked", "tock")
-        world, outbox = self._world, self.agents.outbox
-        questions: list[Request] = []
-        answers: tuple[Any, ...] = ()
-        with self._within_tick():
-            if outbox:
-                for request in outbox:
-                    if request.reading is None:
-                        _ask(request, world.bodies[request.body].set)
-                    else:
-                        questions.append(request)
-                outbox.clear()
-            world.step(self._steps)
-            if questions:
-                answers = tuple(_ask(request, world.bodies[request.body].get) for request in questions)
-                self._answer(questions, answers)
+        self._phase = "running"
+        try:
+            answers = self._tock()
+        except BaseException:
+            self.fail()
+            raise
         self.ticks += 1
         self._phase = "ready"
         return answers
 
-    @contextmanager
-    def _within_tick(self) -> Generator[None]:
-        """Runs a part of a tick; a run in which it fails cannot continue."""
-        self._phase = "running"
-        try:
-            yield
-        except BaseException:
-            self._phase = "failed"
-            raise
+    def _tock(self) -> tuple[Any, ...]:
+        world, outbox = self._world, self.agents.outbox
+        questions: list[Request] = []
+        if outbox:
+            for request in outbox:
+                if request.reading is None:
+                    _ask(request, world.bodies[request.body].set)
+                else:
+                    questions.append(request)
+            outbox.clear()
+        world.step(self._steps)
+        answers: tuple[Any, ...] = ()
+        if questions:
+            answers = tuple(_ask(request, world.bodies[request.body].get) for request in questions)
+            self._answer(questions, answers)
+        return answers
 
     def repeat_tick(self, answers: tuple[Any, ...]) -> None:
         """Repeats a known tick with its answers, without its physics.
