@@ -331,6 +331,26 @@ def test_a_full_disk_is_one_clear_error(tmp_path: Path, words: list[str], source
     assert done.stderr.count("Traceback") == bool(message)
 
 
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    ("words", "code"), [(["replay", "run"], 2), (["bench"], 2), (["--version"], 1), (["--help"], 1), (["run", "model.py", "--help"], 1)]
+)
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_the_output_of_every_command_is_written_or_the_exit_code_says_that_it_is_not(
+    tmp_path: Path, words: list[str], code: int, unbuffered: str
+) -> None:
+    assert run(tmp_path, "print('x')", "--record", "run").returncode == 0
+    command, environment = [*COMMAND, *words], {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (code, "error: cannot write the output: No space left on device\n")
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (code, "")
+
+
 @pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
 def test_a_model_may_close_its_output(tmp_path: Path, words: list[str]) -> None:
     done = run(tmp_path, "import ccm, sys\nprint('said')\nsys.stdout.close()\nccm.Model().run(1)", *words)
