@@ -202,6 +202,12 @@ def _count(text: str, most: int = MOST) -> int:
     return int(text)
 
 
+def _file(text: str) -> str:
+    if not text:
+        raise argparse.ArgumentTypeError("must be the name of a file (got '')")
+    return text
+
+
 def _folder(text: str) -> str:
     if not text:  # the value of a variable of the shell that is not set
         raise argparse.ArgumentTypeError("must be the name of a folder (got '')")
@@ -240,14 +246,14 @@ def _add_run(commands: Any) -> None:
         add_help=False,
         allow_abbrev=False,
     )
-    run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
+    run.add_argument("file", type=_file, metavar="FILE", nargs="?", help="the model file")
     general = [
         run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file"),
         run.add_argument("--seed", type=_seed, metavar="N", help="seed of all random choices (default: a new one)"),
         run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest"),
         run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)"),
         run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too"),
-        run.add_argument("--record", metavar="RECORDING", help="record everything to this new file"),
+        run.add_argument("--record", type=_file, metavar="RECORDING", help="record everything to this new file"),
         run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds"),
     ]
     run.set_defaults(function=run_command, parser=run, general=[name for option in general for name in option.option_strings])
@@ -263,7 +269,7 @@ def _add_replay(commands: Any) -> None:
         "of another format, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that "
         "ran it, or the output could not be written; 130 it was interrupted.",
     )
-    again.add_argument("file", metavar="RECORDING", help="the recording")
+    again.add_argument("file", type=_file, metavar="RECORDING", help="the recording")
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
@@ -301,7 +307,7 @@ def _add_experiment(commands: Any) -> None:
     experiment.add_argument("--check", action="store_true", help="check the design, run two trials, and print what would run")
     experiment.add_argument("--json", action="store_true", help="print one JSON object a line: progress, and what is found")
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
-    experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
+    experiment.add_argument("--record", type=_file, metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
 
 

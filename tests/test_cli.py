@@ -234,6 +234,10 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
         (["bench", "core", "--fast"], "unrecognized arguments: --fast"),
         (["bench", "coer"], "no benchmark 'coer'; did you mean 'core'? There are: "),
         (["run"], "the following arguments are required: FILE"),
+        (["run", ""], "argument FILE: must be the name of a file (got '')"),
+        (["run", "model.py", "--record", ""], "argument --record: must be the name of a file (got '')"),
+        (["replay", ""], "argument RECORDING: must be the name of a file (got '')"),
+        (["experiment", "fan_effect", "--trial", "0", "--record", ""], "argument --record: must be the name of a file (got '')"),
         ([], "the following arguments are required: COMMAND"),
     ],
 )
