@@ -399,3 +399,11 @@ def test_the_package_is_the_command(tmp_path: Path) -> None:
     }
     assert len(said) == 1
     assert said.pop().startswith(b"said {")
+
+
+def test_an_interruption_while_the_command_is_loaded_is_no_traceback(tmp_path: Path) -> None:
+    (tmp_path / "argparse.py").write_text("raise KeyboardInterrupt\n", encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(Path(actr3d.__file__).parents[1])])}
+    command = [sys.executable, "-m", "actr3d", "bench"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")
