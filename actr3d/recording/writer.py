@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 import sqlite3
 from array import array
 from collections import deque
@@ -27,6 +28,7 @@ from actr3d.trace import TraceEvent
 from actr3d.values import escape_surrogates, plain_to_json
 
 FULL = "the disk is full"
+GONE = "it was deleted, moved or replaced during the run"
 INTERVAL = 0.25
 """The interval at which new items are written, besides on request [s of real time]; a killed run loses at most the items of one
 interval."""
@@ -110,6 +112,7 @@ class Writer:
 
     def __init__(self, path: Path, facts: Sequence[tuple[str, str]]) -> None:
         self.path = path
+        self._absolute = path.absolute()  # the program may change its working directory
         self.failure: RecordingError | None = None
         """Why writing stopped; None while it works."""
         # One thread appends, another removes, and neither waits for the other.
@@ -196,10 +199,21 @@ class Writer:
             except BaseException as error:
                 # Items may be lost, whatever was raised: nothing may be written after a gap.
                 reason = _reason(error)
-                advice = "; make room on the disk, then run it again" if reason == FULL else ""
-                self.failure = _unwritable(self.path, reason, f"{self._kept_text()}{advice}")
+                if self._created and not self._is_in_place():
+                    self.failure = _unwritable(self.path, GONE, "; if it was moved, look for it there")
+                else:
+                    advice = "; make room on the disk, then run it again" if reason == FULL else ""
+                    self.failure = _unwritable(self.path, reason, f"{self._kept_text()}{advice}")
                 if not isinstance(error, Exception):
                     raise
+
+    def _is_in_place(self) -> bool:
+        """Returns whether the path still is that of the file that this writer has created."""
+        try:
+            status = self._absolute.stat()
+        except OSError:
+            return False
+        return (status.st_dev, status.st_ino) == self._identity
 
     def _kept_text(self) -> str:
         """Returns how much is kept of a recording that can no longer be written; removes the file if it has nothing of the run."""
@@ -211,16 +225,18 @@ class Writer:
             return f"; the first {some} of the run are kept, nothing of what came after"
         with suppress(sqlite3.Error, AttributeError):  # it may not have been opened
             self._file.close()
-        _remove(self.path)
+        _remove(self._absolute)
         return "; nothing was written"
 
     # -- the file
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
-        self.path.open("xb").close()
+        with self.path.open("xb") as new:
+            status = os.fstat(new.fileno())
+        self._identity = status.st_dev, status.st_ino
         self._created = True
         # The absolute path, because SQLite gives names such as `:memory:` a special meaning.
-        self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
+        self._file = sqlite3.connect(self._absolute, isolation_level=None, check_same_thread=False)
         # The beginning and the end of a run do not wait for the disk, only for the system; the thread waits in between.
         self._file.execute("PRAGMA synchronous=OFF")
         # Others can read the file during the run, and what is committed survives if the program is killed.
