@@ -178,7 +178,7 @@ def test_a_program_that_runs_its_model_in_a_thread_is_compared(path: Path, capsy
     capsys.readouterr()
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out == f"every byte agrees: {count} events\n"
-    forge(path, """UPDATE events SET data = replace(data, '"text": "2"', '"text": "7"')""")
+    forge(path, """UPDATE events SET data = replace(data, '"text":"2"', '"text":"7"')""")
     assert main(["replay", str(path)]) == 1
     assert '"text": "7"' in capsys.readouterr().out
 
