@@ -118,9 +118,15 @@ def code_json(made_here: bool, file: str, source: str, helpers: Mapping[str, str
 
 @router.get("/models")
 def models(request: Request) -> dict[str, Any]:
-    """Lists the model files; none of them is executed. `manual` says whether the manual is there, `no_manual` how to get it if not."""
+    """Lists the model files; none of them is executed.
+
+    `problem` says why a file cannot be opened, null if it can; `manual` whether the manual is there, `no_manual` how to get it if not.
+    """
     folder = sessions_of(request).folder
-    files = [{"path": escape_surrogates(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
+    files = [
+        {"path": escape_surrogates(path), **vars(outline_of(folder.root / path)), "problem": folder.problem_of(path)}
+        for path in folder.paths()
+    ]
     missing = no_manual() if manual() is None else None
     return {"folder": escape_surrogates(str(folder.root)), "models": files, "manual": missing is None, "no_manual": missing}
 
