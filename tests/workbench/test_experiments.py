@@ -98,7 +98,13 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
     assert (listed["warren_whang_1987"]["file"], listed["warren_whang_1987"]["model"]) == (None, "aperture_passage.py")
     assert listed["slow/counting_design.py:counting"]["model"] == "slow/counter.py"
     assert workbench.get("/api/designs").json()["processors"] == len(os.sched_getaffinity(0))
-    assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
+    assert workbench.get("/api/designs").json()["most"] == {
+        "participants": 1_000_000,
+        "trials": 1_000_000,
+        "workers": 256,
+        "levels": 200,
+        "characters": 1_000,
+    }
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
     assert "nothing_like_this" in answer.json()["error"]
