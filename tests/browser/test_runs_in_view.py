@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict
+from io import BytesIO
 from typing import Any
 
+import pytest
+from PIL import Image
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import answers, drawn, open_tab, shows, until
@@ -75,3 +78,22 @@ def test_the_chosen_run_is_in_view_when_it_is_chosen_after_a_reload_and_when_the
     assert page.locator(".runs-list").evaluate("(list) => list.scrollTop") == 30 * 44
     page.evaluate("async (id) => { const { chosen } = await part('runs/table.js'); chosen.value = new Set([id]); }", ids[2])
     in_view(page, ids[2])  # of a file that was added
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_head_of_the_list_is_as_wide_as_the_list(pages: Pages, theme: str) -> None:
+    page = pages("doorway.py", width=1280, height=800, theme=theme, tab="runs")
+    shows(page, "#status", "at its start")
+    listed(page, 2)
+    expect(page.locator("tr[data-run='run-01']")).to_be_visible()
+    box = page.locator(".runs-list").bounding_box()
+    assert box is not None
+    width = page.locator(".runs-list").evaluate("(list) => list.clientWidth")
+    assert width < box["width"]  # beside it is room for the scroll bar
+    drawn(page)
+    with Image.open(BytesIO(page.screenshot(clip={**box, "height": 60}))) as picture:
+        table, beside = ([picture.getpixel((x, y)) for y in range(60)] for x in (width - 2, int(box["width"]) - 2))
+    head = int(page.locator(".runs-list thead").evaluate("(head) => head.offsetHeight"))
+    assert len(set(table[:head])) == 2  # its colour, and the line below it
+    assert beside[:head] == table[:head]
+    assert beside[head:] == table[head:]
