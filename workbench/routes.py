@@ -21,14 +21,13 @@ from workbench.built_manual import manual, manual_page, no_manual
 from workbench.disconnects import while_connected
 from workbench.files import ModelFile
 from workbench.loader import ModelListing, Problem, listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
-from workbench.page_commands import Name, PageMessage, PlainValue, Text
+from workbench.page_commands import FilePath, Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
 from workbench.trash import restore_from_trash
 
 router = APIRouter(prefix="/api")
 
-FilePath = Annotated[str, Field(min_length=1, max_length=400)]
 InFolder = Annotated[str, Query(min_length=1, max_length=400)]
 Id = Annotated[str, InPath(min_length=1, max_length=160)]
 Version = Annotated[str, Field(max_length=100)]

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from workbench.worker.controlled_run import ControlledRun
     from workbench.worker.run_controller import RunController
 
+FilePath = Annotated[str, Field(min_length=1, max_length=400)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Text = Annotated[str, Field(max_length=1_000_000)]
 Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
