@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.test_runs_panel import recorded, row
 from tests.helpers.page import drawn, say, shows, until
+from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
 
@@ -100,18 +102,11 @@ def test_fields_and_sliders_of_parameters_are_in_columns_though_their_units_diff
     assert [len(edges(of, name)) for of in (fields, sliders) for name in ("left", "right")] == [1, 1, 1, 1]
 
 
-def test_headings_of_a_comparison_are_level_with_what_is_beside_them(pages: Pages) -> None:
+def test_headings_of_a_comparison_are_level_with_what_is_beside_them(pages: Pages, workbench: Served) -> None:
+    names = [recorded(workbench, "counting.py") for _ in range(2)]
     page = pages("counting.py", tab="runs")
-    page.click("#run")
-    shows(page, "#status", "ended")
-    page.click("#restart")
-    shows(page, "#status", "at its start")
-    page.click("#run")
-    shows(page, "#status", "ended")
-    expect(page.locator("tr.present")).to_contain_text("ended")  # the list has both
-    boxes = page.locator("tr[data-run] input[type=checkbox]")
-    for n in range(2):
-        boxes.nth(n).check()
+    for name in names:
+        row(page, name).get_by_role("checkbox").check()
     page.get_by_role("button", name="Compare", exact=True).click()
     header = page.locator("dialog.compare section header").first
     expect(header.locator("select")).to_be_visible()

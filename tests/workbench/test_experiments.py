@@ -85,7 +85,11 @@ def finished(workbench: Served) -> str:
 
 def test_designs_of_the_library_and_of_model_files_are_listed_without_running_them(workbench: Served) -> None:
     (workbench.folder / "bad_design.py").write_text("import nothing_like_this\n@design\ndef bad():\n    '''Never runs.'''\n", "utf-8")
+    unusable = workbench.folder / "bad:design.py"  # a name that no request can have
+    unusable.write_text("@design\ndef bad(): ...\n", "utf-8")
     listed = {one["id"]: one for one in workbench.get("/api/designs").json()["designs"]}
+    unusable.unlink()
+    assert not [name for name in listed if name.startswith("bad:")]
     assert listed[COUNTING] == {
         "id": COUNTING,
         "name": "counting",
