@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -72,3 +72,23 @@ def test_a_command_that_takes_long_is_no_silence(page: Page) -> None:
     page.click("#stop")
     shows(page, "#status", "stopped")
     assert page.evaluate("window.signs") == [False]
+
+
+PLACES = """async () => {
+  const { silent } = await part("silence.js");
+  const note = document.querySelector(".silence");
+  while (note.offsetHeight === 0) {
+    silent.value = true;
+    await new Promise((done) => requestAnimationFrame(done));
+  }
+  return [document.querySelector(".bar").getBoundingClientRect().bottom, note.getBoundingClientRect().top];
+}"""
+"""Returns where the bar ends and where the note begins [px]."""
+
+
+def test_the_note_covers_nothing_of_the_bar(pages: Callable[..., Page]) -> None:
+    page = pages(width=853, height=533)
+    shows(page, "#status", "at its start")
+    bar, note = page.evaluate(PLACES)
+    assert bar > 60  # it has two rows
+    assert bar <= note < bar + 20
