@@ -19,7 +19,7 @@ from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.parameter_schema import literal
 from actr3d.values import escape_surrogates
 from workbench.files import MAX_FILE_SIZE, ModelFolder, file_stamp
-from workbench.page_commands import PageMessage
+from workbench.page_message import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
 """The folder of the library's own designs; importing them would load what only experiments need."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union, cas
 
 from pydantic import Discriminator, Field, Tag, TypeAdapter
 
-from workbench.page_commands import COMMANDS, Name, PageCommand, PageMessage
+from workbench.page_commands import COMMANDS, Name, PageCommand
+from workbench.page_message import PageMessage
 
 if TYPE_CHECKING:
     AnyCommand = PageCommand

@@ -21,7 +21,8 @@ from workbench.built_manual import manual, manual_page, no_manual
 from workbench.disconnects import while_connected
 from workbench.files import ModelFile
 from workbench.loader import ModelListing, Problem, listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
-from workbench.page_commands import FilePath, Name, PageMessage, PlainValue, Text
+from workbench.page_commands import Name, PlainValue, Text
+from workbench.page_message import FilePath, PageMessage
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
 from workbench.trash import restore_from_trash

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from workbench.page_commands import FilePath, PageMessage
+from workbench.page_message import FilePath, PageMessage
 
 LONGEST_TEXT = 200_000
 """Maximum length of a text that is read [characters]."""

@@ -7,10 +7,11 @@ from contextlib import nullcontext
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, Field
 
 from actr3d.errors import Actr3dError, alternatives
 from actr3d.registry import Registry
+from workbench.page_message import PageMessage
 from workbench.worker.messages import Reply
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from workbench.worker.controlled_run import ControlledRun
     from workbench.worker.run_controller import RunController
 
-FilePath = Annotated[str, Field(min_length=1, max_length=400)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Text = Annotated[str, Field(max_length=1_000_000)]
 Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
@@ -41,12 +41,6 @@ def _plain(value: Any) -> Any:
 
 PlainValue = Annotated[bool | int | float | Annotated[str, Field(max_length=LONGEST_TEXT)] | None, BeforeValidator(_plain)]
 """A value that can be recorded."""
-
-
-class PageMessage(BaseModel):
-    """Base of everything that a page or a program sends."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class PageCommand(PageMessage):
