@@ -2,6 +2,7 @@
 
 import { page } from "./address.js";
 import { frameBudget } from "./frame_budget.js";
+import { askBy, awaited, heard } from "./silence.js";
 import { connected, events, forget, hurried, known, notify, opening, restarted, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation, the camera's code is compiled, too, which takes up to a minute.";
@@ -59,10 +60,15 @@ export async function fetchFile(path, signal, progress) {
 }
 
 async function answerOf(path, options) {
+  const answered = awaited();
   try {
-    return await fetch(path, options);
+    const response = await fetch(path, options);
+    heard();
+    return response;
   } catch {
     throw Object.assign(new Error("the workbench does not answer; is it still running?"), { status: 0, body: null });
+  } finally {
+    answered();
   }
 }
 
@@ -103,6 +109,12 @@ export function show(session) {
   else connect();
 }
 
+askBy(() => {
+  const isOpen = socket?.readyState === WebSocket.OPEN;
+  if (isOpen) socket.send('{"type":"ping"}');
+  return isOpen;
+});
+
 /** Whether an error only means that the page shows another run by now. */
 export const isLeft = (error) => error.left === true;
 
@@ -116,9 +128,15 @@ function leave() {
 
 /** Cancels all pending requests. */
 function abandon(reason) {
-  const all = [...waiting.values()];
-  waiting.clear();
-  for (const { reject } of all) reject(reason());
+  for (const number of [...waiting.keys()]) settled(number).reject(reason());
+}
+
+/** Returns {resolve, reject} of a request that waits no longer; nothing if it is not known. */
+function settled(number) {
+  const { resolve, reject, answered } = waiting.get(number) ?? {};
+  waiting.delete(number);
+  answered?.();
+  return { resolve, reject };
 }
 
 /** Returns the session that is shown with a model: the newest that is not of a recording; undefined for none. */
@@ -184,6 +202,7 @@ export function connect() {
     if (shown) attach();
   };
   socket.onmessage = ({ data }) => {
+    heard();
     const message = JSON.parse(data);
     if (message.type === "refused") refused(message);
     if (message.type !== "update" || message.of !== shown) return; // messages of the previously shown session may still arrive
@@ -194,6 +213,7 @@ export function connect() {
   };
   socket.onclose = ({ reason }) => {
     connected.value = false;
+    heard();
     update(); // otherwise the next connection sends these updates again
     abandon(() => new Error(reason ? `the workbench ended the connection: ${reason}` : "the connection was lost"));
     if (session.peek()) seeWhetherRestarted();
@@ -208,8 +228,7 @@ async function seeWhetherRestarted() {
 
 /** Deals with what the server does not do: a session that was ended while there was no connection is opened again. */
 function refused({ error, id, session: asked }) {
-  const { reject } = waiting.get(id) ?? {};
-  waiting.delete(id);
+  const { reject } = settled(id);
   if (reject) reject(new Error(error));
   else if (asked === undefined || asked !== shown || session.peek() === null) {
     if (asked === shown) opening.value = null;
@@ -246,8 +265,7 @@ function update() {
   frameBudget.hurried = hurried.peek();
   for (const { replies = [] } of messages) {
     for (const reply of replies) {
-      const { resolve, reject } = waiting.get(reply.id) ?? {};
-      waiting.delete(reply.id);
+      const { resolve, reject } = settled(reply.id);
       if (reply.error === null) resolve?.(reply.result);
       else reject?.(Object.assign(new Error(reply.error), { loses: reply.loses, field: reply.field }));
     }
@@ -267,7 +285,7 @@ export function request(what) {
     }
     for (const send of unsent) send();
     number += 1;
-    waiting.set(number, { resolve, reject });
+    waiting.set(number, { resolve, reject, answered: awaited() });
     socket.send(JSON.stringify({ id: number, command: what }));
   });
 }

@@ -27,6 +27,7 @@ import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
 import { hurried, notify, session } from "./store.js";
 import { show } from "./server.js";
+import { silent } from "./silence.js";
 import { alone, embedded, follow, openWindow } from "./windows.js";
 
 const MIN_SCENE = 320; // [px]
@@ -34,6 +35,8 @@ const MIN_SCENE = 320; // [px]
 const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, { title, View }])), scene: { title: "3D view", View: Scene }, timeline: { title: "Timeline", View: Timeline } };
 
 const TABS = PANELS.filter(({ needs = null }) => isAvailable(needs));
+
+const SILENT = `The ${embedded === null ? "workbench" : "kernel"} does not answer; what you asked for is done as soon as it does …`;
 
 const onePanel = () => "This window shows one panel.";
 TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => goToTab(id), ready: () => alone === null, why: onePanel }));
@@ -115,5 +118,6 @@ export function Workbench() {
     <${Comparison} />
     <${Dialogs} />
     <${CommandPalette} />
-    <${Toasts} />`;
+    <${Toasts} />
+    <div class="silence" role="status">${silent.value ? SILENT : ""}</div>`;
 }

@@ -19,7 +19,7 @@ from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.parameter_schema import literal
 from actr3d.values import escape_surrogates
 from workbench.files import MAX_FILE_SIZE, ModelFolder, file_stamp
-from workbench.page_commands import PageMessage
+from workbench.page_message import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
 """The folder of the library's own designs; importing them would load what only experiments need."""
@@ -27,9 +27,13 @@ LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
 
 Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
-Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
-MOST = {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
-"""The greatest numbers that are taken, by the names of the fields; the page's form has them from `/api/designs`."""
+MOST = {"participants": 1_000_000, "trials": 1_000_000, "workers": 256, "levels": 200, "characters": 1_000}
+"""The greatest numbers that are taken, by the names of the fields, also of levels of a factor, and of characters of a level.
+
+The page's form has them from `/api/designs`.
+"""
+Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=MOST["characters"])] | None
+LevelText = Annotated[str, Field(max_length=MOST["characters"])]
 Workers = Annotated[int, Field(ge=1, le=MOST["workers"])]
 
 
@@ -55,9 +59,9 @@ class DesignOutline:
 
 
 def designs_of(folder: ModelFolder) -> list[DesignOutline]:
-    """Returns the designs of the library and of the model files."""
+    """Returns the designs of the library and of the model files that can be opened."""
     found = [outline for path in sorted(LIBRARY.glob("*.py")) for outline in _in_file(path, None)]
-    return found + [outline for path in folder.paths() for outline in _in_file(folder.root / path, escape_surrogates(path))]
+    return found + [outline for path in folder.paths() if folder.problem_of(path) is None for outline in _in_file(folder.root / path, path)]
 
 
 def design_argument(folder: ModelFolder, design: str) -> str:
@@ -147,9 +151,9 @@ class WantedDesign(PageMessage):
 
     design: Annotated[str, Field(min_length=1, max_length=500)]
     """The name of one of the library's, or `FILE:NAME`."""
-    values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
+    values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=MOST["levels"])]] = Field(default_factory=dict, max_length=100)
     """New levels of factors, or values of other parameters."""
-    texts: dict[Identifier, Annotated[list[Annotated[str, Field(max_length=1_000)]], Field(min_length=1, max_length=200)]] = Field(
+    texts: dict[Identifier, Annotated[list[LevelText], Field(min_length=1, max_length=MOST["levels"])]] = Field(
         default_factory=dict, max_length=100
     )
     """The same as users write them, one text for each level: each is read as the command reads it, so that both give one experiment."""

@@ -62,7 +62,10 @@ class ModelFolder:
         self._saving = Lock()
 
     def paths(self) -> list[str]:
-        """Returns the paths of all model files, sorted by folder depth and name, without hidden files and links that lead outside."""
+        """Returns the paths of all model files, sorted by folder depth and name, without hidden files and links that lead outside.
+
+        Other programs can make files whose paths cannot be opened: `problem_of` says why.
+        """
         found: list[str] = []
         for path in self._walk(self.root):
             found.append(path.relative_to(self.root).as_posix())
@@ -83,22 +86,34 @@ class ModelFolder:
             elif path.suffix == ".py" and path.is_file() and path.resolve().is_relative_to(self.root):
                 yield path
 
+    @staticmethod
+    def problem_of(path: str) -> str | None:
+        """Returns why a path cannot be that of a model file, whether or not there is such a file; None if it can."""
+        parts = path.split("/")
+        if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
+            return "must be a path with slashes, of at most 400 bytes"
+        if any(len(part.encode("utf-8", "replace")) > 200 for part in parts):
+            return "each name in it must have at most 200 bytes; many letters have more than one"
+        if any(part in ("", ".", "..") or part[0] == "." for part in parts):
+            return "must lie inside the models folder, without hidden parts"
+        if not path.endswith(".py"):
+            return "must end in .py"
+        if ":" in path:
+            return "must have no colon"
+        if any(unicodedata.category(c)[0] == "C" for c in path):
+            return "must have no invisible or invalid characters"
+        return None
+
     def locate(self, path: str) -> Path:
         """Returns the location of a path inside the folder.
 
         Raises:
             FileError: If the path leads out of the folder, is hidden, or is not a name of a model file.
         """
-        parts = path.split("/")
-        if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
-            raise FileError("the path of a model file: must be a path with slashes, of at most 400 bytes")
-        if any(len(part.encode("utf-8", "replace")) > 200 for part in parts):
-            raise FileError("the path of a model file: each name in it must have at most 200 bytes; many letters have more than one")
-        if any(part in ("", ".", "..") or part[0] == "." for part in parts):
-            raise FileError("the path of a model file: must lie inside the models folder, without hidden parts")
-        if not path.endswith(".py") or any(unicodedata.category(c)[0] == "C" for c in path) or ":" in path:
-            raise FileError("the path of a model file: must end in .py, without control characters and colons")
-        where = self.root.joinpath(*parts)
+        problem = self.problem_of(path)
+        if problem is not None:
+            raise FileError(f"the path of a model file: {problem}")
+        where = self.root / path
         try:
             end = where.resolve()
             inside = end.is_relative_to(self.root) and not end.is_symlink()  # since Python 3.13, a loop of links is returned

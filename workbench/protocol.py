@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union, cas
 
 from pydantic import Discriminator, Field, Tag, TypeAdapter
 
-from workbench.page_commands import COMMANDS, Name, PageCommand, PageMessage
+from workbench.page_commands import COMMANDS, Name, PageCommand
+from workbench.page_message import PageMessage
 
 if TYPE_CHECKING:
     AnyCommand = PageCommand
@@ -34,20 +35,29 @@ class Attach(PageMessage):
     """Identifies the page: a panel in a window of its own belongs to the page that has opened it."""
 
 
+class Ping(PageMessage):
+    """A question whether the workbench is there, at any time; the answer is a `pong`."""
+
+    type: Literal["ping"] = "ping"
+
+
 class Request(PageMessage):
-    """Any later message of a page: a command or question with a number, which the reply repeats."""
+    """Any other message of a page: a command or question with a number, which the reply repeats."""
 
     id: int = Field(ge=0, lt=2**53)
     command: AnyCommand
 
 
 def _kind_of(message: Any) -> str:
-    return "attach" if isinstance(message, dict) and cast("dict[Any, Any]", message).get("type") == "attach" else "request"
+    kind = cast("dict[Any, Any]", message).get("type") if isinstance(message, dict) else None
+    return kind if kind in ("attach", "ping") else "request"
 
 
-Message: TypeAlias = Annotated[Annotated[Attach, Tag("attach")] | Annotated[Request, Tag("request")], Discriminator(_kind_of)]
-MESSAGE: TypeAdapter[Attach | Request] = TypeAdapter(Message)
-"""Validates a message of a page: it is an `Attach` if its own `type` says so."""
+Message: TypeAlias = Annotated[
+    Annotated[Attach, Tag("attach")] | Annotated[Ping, Tag("ping")] | Annotated[Request, Tag("request")], Discriminator(_kind_of)
+]
+MESSAGE: TypeAdapter[Attach | Ping | Request] = TypeAdapter(Message)
+"""Validates a message of a page: it is an `Attach` or a `Ping` if its own `type` says so."""
 
 
 def problem_of(error: Mapping[str, Any]) -> str:

@@ -20,7 +20,8 @@ from workbench.disconnects import DisconnectedError
 from workbench.labels import Label
 from workbench.listing import MAX_LISTED
 from workbench.open_file import OpenFile
-from workbench.page_commands import Name, PageMessage
+from workbench.page_commands import Name
+from workbench.page_message import PageMessage
 from workbench.recording_index import Summary
 from workbench.recordings import Recordings
 from workbench.retention import erase, is_complete

@@ -21,14 +21,14 @@ from workbench.built_manual import manual, manual_page, no_manual
 from workbench.disconnects import while_connected
 from workbench.files import ModelFile
 from workbench.loader import ModelListing, Problem, listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
-from workbench.page_commands import Name, PageMessage, PlainValue, Text
+from workbench.page_commands import Name, PlainValue, Text
+from workbench.page_message import FilePath, PageMessage
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
 from workbench.trash import restore_from_trash
 
 router = APIRouter(prefix="/api")
 
-FilePath = Annotated[str, Field(min_length=1, max_length=400)]
 InFolder = Annotated[str, Query(min_length=1, max_length=400)]
 Id = Annotated[str, InPath(min_length=1, max_length=160)]
 Version = Annotated[str, Field(max_length=100)]
@@ -118,9 +118,15 @@ def code_json(made_here: bool, file: str, source: str, helpers: Mapping[str, str
 
 @router.get("/models")
 def models(request: Request) -> dict[str, Any]:
-    """Lists the model files; none of them is executed. `manual` says whether the manual is there, `no_manual` how to get it if not."""
+    """Lists the model files; none of them is executed.
+
+    `problem` says why a file cannot be opened, null if it can; `manual` whether the manual is there, `no_manual` how to get it if not.
+    """
     folder = sessions_of(request).folder
-    files = [{"path": escape_surrogates(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
+    files = [
+        {"path": escape_surrogates(path), **vars(outline_of(folder.root / path)), "problem": folder.problem_of(path)}
+        for path in folder.paths()
+    ]
     missing = no_manual() if manual() is None else None
     return {"folder": escape_surrogates(str(folder.root)), "models": files, "manual": missing is None, "no_manual": missing}
 

@@ -111,7 +111,9 @@ class _Page:
                     await self._websocket.close(1008, "too many replies were not read")
                     return
                 read = _read(text)
-                if isinstance(read, protocol.Attach):
+                if isinstance(read, protocol.Ping):
+                    await self._websocket.send_text('{"type":"pong"}')
+                elif isinstance(read, protocol.Attach):
                     if feed is not None:
                         session.leave(feed)
                         feed = None
@@ -179,8 +181,8 @@ def _number_of(text: str | None) -> int | None:
     return number if isinstance(number, int) and 0 <= number < 2**53 else None
 
 
-def _read(text: str | None) -> protocol.Attach | protocol.Request | str:
-    """Parses a page's message: an `Attach`, a `Request`, or the reason why it is neither. The text of a binary message is None."""
+def _read(text: str | None) -> protocol.Attach | protocol.Ping | protocol.Request | str:
+    """Returns a page's message, or the reason why it is none. The text of a binary message is None."""
     if text is None:
         return "a message must be text (JSON), not binary data"
     try:

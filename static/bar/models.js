@@ -11,8 +11,10 @@ import { alive, connected, isShared, notify, running, session, shownRecording } 
 import { furthest, isBeyond, present, runTimeText, travel } from "../timeline/seek.js";
 import { alone, followWindows, passOn } from "../windows.js";
 
-/** The model files of the folder: {path, title, kind}. */
+/** The model files of the folder that can be opened: {path, title, kind}. */
 export const models = signal([]);
+/** Those that cannot be opened because of their names: {path, title, problem}, with what a path must be. */
+const unusable = signal([]);
 /** Returns the name of a model's file, with its folder if another folder has a file of that name. */
 function shortName(path) {
   const nameOf = (one) => one.split("/").at(-1);
@@ -43,7 +45,9 @@ export async function listModels() {
   const listing = await call("GET", "/api/models");
   if (mine !== asked) return;
   folder.value = listing.folder;
-  models.value = listing.models;
+  const { can = [], cannot = [] } = Object.groupBy(listing.models, ({ problem }) => (problem ? "cannot" : "can"));
+  models.value = can;
+  unusable.value = cannot;
   hasManual.value = listing.manual;
   noManual.value = listing.no_manual;
 }
@@ -184,7 +188,13 @@ effect(() => {
   else if (isOther) goToAddress("run", recorded);
 });
 
-commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })), { needs: "models folder" });
+commandsOf(
+  () => [
+    ...models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })),
+    ...unusable.value.map(({ path, title, problem }) => ({ text: `Model: ${path}`, group: title, work: () => {}, ready: () => false, why: () => `The path of a model file: ${problem}.` })),
+  ],
+  { needs: "models folder" },
+);
 
 /** Shows what the address names, or the model shown last, when the page is opened; if the workbench does not answer, as soon as it does. */
 export async function begin() {
@@ -223,6 +233,12 @@ export async function begin() {
   if (problem !== null) notify(problem); // only now, because messages are cleared with the session shown before
 }
 
+/** The end of a choice of files: those that cannot be opened, each with what its path must be. */
+export function UnusableModels() {
+  if (unusable.value.length === 0) return null;
+  return html`<optgroup label="Cannot be opened under their names">${unusable.value.map(({ path, problem }) => html`<option key=${path} disabled title=${path}>${path}: ${problem}</option>`)}</optgroup>`;
+}
+
 export function ModelChoice() {
   useLayoutEffect(() => void begin(), []);
   const recorded = session.value?.recorded ?? null;
@@ -241,5 +257,6 @@ export function ModelChoice() {
     ${recorded !== null ? html`<option value="">a recording</option>` : null}
     ${gone ? html`<option value=${shown}>${shown} (not in the folder)</option>` : null}
     ${[...folders].map(([folder, list]) => (folder ? html`<optgroup key=${folder} label=${folder}>${list.map(option)}</optgroup>` : list.map(option)))}
+    <${UnusableModels} />
   </select>`;
 }

@@ -7,6 +7,7 @@ import { StaleRunNote } from "../editor/stale_run.js";
 import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
+import { silent } from "../silence.js";
 import { embedded } from "../windows.js";
 import { connected, me, restarted, session, state } from "../store.js";
 
@@ -35,8 +36,8 @@ export function StatusLine() {
       ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
     </span>
     ${embedded === null ? html`<${Share} />` : null}
-    <span id="connection" class=${connected.value === false ? "bad" : ""}>
-      ${connected.value === false ? (restarted.value ? RESTARTED : LOST) : connected.value ? "connected" : "connecting …"}
+    <span id="connection" class=${connected.value === false || silent.value ? "bad" : ""}>
+      ${silent.value ? "no answer" : connected.value === false ? (restarted.value ? RESTARTED : LOST) : connected.value ? "connected" : "connecting …"}
     </span>
   </footer>`;
 }

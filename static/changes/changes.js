@@ -3,7 +3,7 @@
 import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
 import { systemsOf } from "../inspector/agents.js";
-import { literal } from "../parameters/values.js";
+import { isTooLarge, literal } from "../parameters/values.js";
 import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
@@ -64,13 +64,13 @@ function read(field, text) {
   if (takes.includes("number")) {
     const value = text.trim() === "" ? null : Number(text) / unitOf(field)[1];
     const wrong = value === null ? required : !Number.isFinite(value);
-    return wrong ? { problem: `${name}: must be a number (got '${text}')` } : { value };
+    return wrong ? { problem: `${name}: ${isTooLarge(text) ? "the number is too large" : "must be a number"} (got '${text}')` } : { value };
   }
   if (!takes.includes(" | ")) return { value: text };
   try {
     return { value: literal(text.trim()) };
-  } catch {
-    return { problem: `${name}: the quotation marks are wrong (got '${text}')` };
+  } catch (error) {
+    return { problem: `${name}: ${error.message} (got '${text}')` };
   }
 }
 

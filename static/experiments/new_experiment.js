@@ -16,7 +16,7 @@ const DESIGN = remembered("design", "");
 const UNKNOWN = { facts: null, seconds: null, error: null };
 const EMPTY_DRAFT = { values: {}, participants: "", trials: "", workers: "" };
 
-/** The designs, and the number of processors: {designs: [{id, name, file, model, description}], processors, most: {participants, trials, workers}}; null before they are known. */
+/** The designs, and the number of processors: {designs: [{id, name, file, model, description}], processors, most: {participants, trials, workers, levels, characters}}; null before they are known. */
 const known = signal(null);
 /** What was entered, by design: {values: {name: text}, participants, trials, workers}. */
 const drafts = remembered("drafts of experiments", {});
@@ -32,13 +32,16 @@ function readCount(name, text) {
   return text.trim() === "" ? null : /^[1-9]\d*$/.test(text.trim()) && Number(text) <= known.value.most[name] ? Number(text) : NaN;
 }
 
+/** Returns the levels that a text lists, as far as the server takes them. */
+const readTaken = (text) => readLevels(text, known.value.most);
+
 /** Returns what the server is asked for, and the number of trials; `problem` says what is wrong. */
 function requestOf(design, facts) {
   const { values, ...counts } = draftOf(design);
   const request = { design, texts: {} };
   let problem = null;
   for (const [name, text] of Object.entries(values)) {
-    const { levels, texts, problem: why } = readLevels(text);
+    const { levels, texts, problem: why } = readTaken(text);
     const isFactor = Boolean(facts?.factors[name]);
     if (levels === null || (!isFactor && levels.length !== 1)) problem ??= `${name}: ${isFactor ? "levels, each once, separated by commas" : "one value"}; ${why ?? `there are ${levels.length} (got '${text}')`}`;
     else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) request.texts[name] = texts;
@@ -162,7 +165,7 @@ function Form({ design, facts, wrong }) {
     <tbody>
       ${Object.entries(facts.factors).map(([name, levels]) => {
         const text = draft.values[name] ?? levelsText(levels);
-        const read = readLevels(text).levels;
+        const read = readTaken(text).levels;
         return html`<tr key=${name}>
           <th scope="row" title="A factor: each participant does all combinations">${name}</th>
           <td><${Field} wide label="Levels of ${name}" value=${text} invalid=${read === null || name === wrong} onInput=${(entered) => set(name, entered)} /></td>
@@ -172,7 +175,7 @@ function Form({ design, facts, wrong }) {
       })}
       ${more.map((name) => html`<tr key=${name}>
         <th scope="row" title=${plain(facts.parameters.find((one) => one.name === name)?.help ?? "")}>${name}</th>
-        <td><${Field} wide isNew=${added.current === name} label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1 || name === wrong} onInput=${(entered) => set(name, entered)} /></td>
+        <td><${Field} wide isNew=${added.current === name} label="Value of ${name}" value=${draft.values[name]} invalid=${readTaken(draft.values[name]).levels?.length !== 1 || name === wrong} onInput=${(entered) => set(name, entered)} /></td>
         <td class="quiet"><button class="bare" aria-label="Remove ${name}" title="Remove" onClick=${() => unset(name)}><${Icon} name="close" /></button></td>
       </tr>`)}
       ${others.length > 0

@@ -57,22 +57,30 @@ function levelText(level) {
 
 export const levelsText = (levels) => levels.map(levelText).join(", ");
 
+const UNLIMITED = { levels: Infinity, characters: Infinity };
+
 /** Returns the levels that a text lists, separated by commas, the text of each, and what is wrong: {levels, texts, problem}; either what
- * is wrong is null, or the others are. Texts may be in quotes. */
-export function readLevels(text) {
-  const wrong = (problem) => ({ levels: null, texts: null, problem: `${problem} (got '${text}')` });
+ * is wrong is null, or the others are. Texts may be in quotes.
+ *
+ * @param most The greatest number of levels, and of characters of a level, that the server takes. */
+export function readLevels(text, most = UNLIMITED) {
+  const none = { levels: null, texts: null };
+  const wrong = (problem) => ({ ...none, problem: `${problem} (got '${text}')` });
   const parts = [""];
   for (const [token] of text.matchAll(/"(?:[^"\\]|\\.)*"?|[^",;]+|[,;]/g)) {
     if (/^[,;]$/.test(token)) parts.push("");
     else parts[parts.length - 1] += token;
   }
   if (parts.some((part) => part.trim() === "")) return wrong(parts.length === 1 ? "there is none" : "one is empty");
+  const texts = parts.map((part) => part.trim());
+  if (texts.length > most.levels) return { ...none, problem: `there are ${texts.length.toLocaleString("en")}, and at most ${most.levels} are possible` };
+  const longest = Math.max(...texts.map((one) => Array.from(one).length));
+  if (longest > most.characters) return { ...none, problem: `one has ${counted(longest, "character")}, and at most ${most.characters.toLocaleString("en")} are possible` };
   try {
-    const texts = parts.map((part) => part.trim());
     const levels = texts.map(literal);
     const twice = levels.find((level, place) => levels.indexOf(level) < place);
     return twice === undefined ? { levels, texts, problem: null } : wrong(`${levelText(twice)} is there twice`);
-  } catch {
-    return wrong("the quotation marks are wrong");
+  } catch (error) {
+    return wrong(error.message);
   }
 }

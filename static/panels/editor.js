@@ -1,7 +1,7 @@
 // The editor: any model file of the folder, its problems, and whether the run that is shown is one of this text.
 
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
-import { folder, listModels, model, models } from "../bar/models.js";
+import { folder, listModels, model, models, UnusableModels } from "../bar/models.js";
 import { define, format, rename as renameName } from "../editor/actions.js";
 import { checkByLoading } from "../editor/checks.js";
 import { focusText, goToLine, keys, leaveText, showText } from "../editor/code.js";
@@ -110,6 +110,7 @@ function Files({ path, document }) {
     <select class="file" aria-label="File" title="${folder.value}/${path ?? ""}" value=${path ?? ""} onChange=${(event) => open(event.currentTarget.value)}>
       ${path ? null : html`<option value="">no file</option>`}
       ${path && !known ? option(path) : null}${models.value.map((one) => option(one.path))}
+      <${UnusableModels} />
     </select>
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}

@@ -5,13 +5,29 @@ export function written(value) {
   return value === null || value === undefined ? "" : String(value);
 }
 
+const TOO_LARGE = "the number is too large";
+
+/** Whether a text is a number beyond the largest that can be computed with, such as 1e400. */
+export function isTooLarge(text) {
+  return Math.abs(Number(text)) === Infinity && /\d/.test(text);
+}
+
 /** Returns the value of a text: a number, true, false, None (null), or the text itself; what is in quotation marks is always a text.
- * Throws a SyntaxError if the quotation marks are wrong. */
+ * Throws an Error with the reason if the quotation marks are wrong, or a number is too large. */
 export function literal(text) {
-  if (text.includes('"')) return JSON.parse(text);
+  if (text.includes('"')) return quoted(text);
+  if (isTooLarge(text)) throw new Error(TOO_LARGE);
   if (text !== "" && Number.isFinite(Number(text))) return Number(text);
   const words = { __proto__: null, true: true, false: false, True: true, False: false, None: null };
   return text in words ? words[text] : text;
+}
+
+function quoted(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    throw new Error("the quotation marks are wrong");
+  }
 }
 
 /** Returns the bounds of a parameter as text: "more than 0, at most 3", "0.3 to 0.7". */
@@ -45,6 +61,7 @@ export function read(parameter, text) {
   if (takes === "choice") return { value: parameter.choices.find((choice) => String(choice) === text) };
   if (takes !== "number" && takes !== "whole number") return { value: text };
   const value = Number(text);
+  if (isTooLarge(text)) return { problem: TOO_LARGE };
   const hint = String(text).includes(",") ? "; the decimal point is '.', and nothing separates thousands" : "";
   if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `must be a ${takes}${hint}` };
   if (takes === "whole number" && !Number.isInteger(value)) return { problem: "must be a whole number" };

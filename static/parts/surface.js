@@ -48,12 +48,18 @@ export function cut(text, most, style = {}) {
   return fits > 0 ? `${line.slice(0, fits)}…` : "";
 }
 
-/** Returns a text that fits into a width [px]; a longer one begins with an ellipsis: names of curves differ at their ends. */
-export function cutBefore(text, most, style = {}) {
-  if (widthOf(text, style) <= most) return text;
-  let from = 1;
-  while (from < text.length && widthOf(`…${text.slice(from)}`, style) > most) from += 1;
-  return from < text.length ? `…${text.slice(from)}` : "";
+/** Returns a name that fits into a width [px]; a longer one has an ellipsis in its middle: names differ at their beginnings and ends. */
+export function cutMiddle(name, most, style = {}) {
+  if (widthOf(name, style) <= most) return name;
+  const letters = Array.from(name);
+  const shortened = (kept) => `${letters.slice(0, Math.ceil(kept / 2)).join("")}…${letters.slice(letters.length - Math.floor(kept / 2)).join("")}`;
+  let [fits, over] = [0, letters.length];
+  while (over - fits > 1) {
+    const kept = (fits + over) >> 1;
+    if (widthOf(shortened(kept), style) <= most) fits = kept;
+    else over = kept;
+  }
+  return fits > 0 ? shortened(fits) : "";
 }
 
 /** Draws on a canvas. Colours are names of style.css. */

@@ -5,6 +5,7 @@ import { timeText } from "../parts/units.js";
 import { useVisible } from "../parts/visible.js";
 import { remembered } from "../local_storage.js";
 import { alive, session, shownRecording, state } from "../store.js";
+import { useRowInView } from "./row_in_view.js";
 import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, originText, outcomeText, ownName, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
 const ROW = 44; // [px]; panels/runs.css has the same
@@ -111,7 +112,9 @@ function Row({ run, list, number, now, toggle, open }) {
  */
 export function Table({ list, open }) {
   const box = useRef(null);
-  const seen = useVisible(box);
+  const ids = list.map((run) => run.id);
+  const row = useRowInView(box, ids, chosen.value, shownRecording.value, ROW);
+  const seen = useVisible(box, row.resized);
   const now = useSignal(Date.now() / 1000);
   const last = useRef(null);
   const focused = useSignal(null); // the id of the run whose row had the focus last
@@ -136,7 +139,6 @@ export function Table({ list, open }) {
 
   /** Chooses a single row; with Ctrl, or its checkbox, in addition to others; with Shift, a range. */
   function toggle(id, event, besides = event.ctrlKey || event.metaKey) {
-    const ids = list.map((run) => run.id);
     const from = ids.indexOf(last.current);
     const next = new Set(besides || event.shiftKey ? chosen.value : []);
     if (event.shiftKey && from >= 0) {
@@ -151,7 +153,7 @@ export function Table({ list, open }) {
   const all = list.length > 0 && list.every((run) => chosen.value.has(run.id));
   const chooseAll = () => (chosen.value = new Set(all ? [] : list.map((run) => run.id)));
 
-  return html`<div class="runs-list" ref=${box} tabindex="-1" onScroll=${seen.look}>
+  return html`<div class="runs-list" ref=${box} tabindex="-1" onScroll=${() => (row.scrolled(), seen.look())}>
     <table class="runs-table" aria-label="Recordings" aria-rowcount=${list.length + 1}>
       <thead>
         <tr aria-rowindex="1">

@@ -118,9 +118,8 @@ function lookUp(event, stage) {
   stage.dataset.part = partAt(x, y);
   const view = viewOf(size.peek().width);
   const row = y < AXIS ? null : layout(filter.peek()).rows.find((one) => y + scroll.peek() >= one.y && y + scroll.peek() < one.y + one.height);
-  if (!row || (x < view.column && row.plot)) return null;
-  if (x < view.column) return { row, time: 0, band: null, named: true };
-  return found(row, timeOf(x, view), secondsPerPixel(view));
+  if (!row) return null;
+  return x < view.column ? { ...found(row, present.peek(), secondsPerPixel(view)), named: true } : found(row, timeOf(x, view), secondsPerPixel(view));
 }
 
 export function Stage() {

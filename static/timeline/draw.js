@@ -1,7 +1,7 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
 import { drawCurves, drawTimes, valueAt } from "../parts/curve.js";
-import { cut, cutBefore, widthOf } from "../parts/surface.js";
+import { cut, cutMiddle, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { session } from "../store.js";
 import { chunkCurve, colourOf, headingOf, titleOf } from "./curves.js";
@@ -115,7 +115,7 @@ function drawUnknown(surface, scene, from, to, side) {
 
 function drawLane(surface, { lane, label, height }, y, scene) {
   const { column, width } = scene;
-  surface.text(cut(label, column - 14), 8, y + height / 2, "text");
+  surface.text(cutMiddle(label, column - 14), 8, y + height / 2, "text");
   surface.line([column, y + height - 0.5, width, y + height - 0.5], "raised");
   surface.within(column, y, width - column, height, () => drawBands(surface, lane.bands, y, height, scene));
 }
@@ -204,7 +204,7 @@ function drawPlotRow(surface, row, y, scene) {
 /** Draws the heading of a plot, and the names of its curves, each with its value at the playhead if there is room. */
 function drawPlotNames(surface, { plot, height }, y, scene) {
   const room = scene.column - SCALE - 8;
-  surface.text(cut(headingOf(plot), room), 8, y + 10, "text", { bold: true });
+  surface.text(cutMiddle(headingOf(plot), room, { bold: true }), 8, y + 10, "text", { bold: true });
   const lines = Math.floor((height - PLOT) / NAME);
   const shown = plot.series.length > lines ? Math.max(0, lines - 1) : plot.series.length;
   const labels = labelsOf(plot, room - 12);
@@ -237,7 +237,7 @@ function labelsOf(plot, room) {
   let [first, last] = [0, 0];
   while (first < most && isShared(first)) first += 1;
   while (last < most - first && isShared(-1 - last)) last += 1;
-  return words.map((list) => cutBefore(list.slice(first, list.length - last).join(" "), room, SMALL));
+  return words.map((list) => cutMiddle(list.slice(first, list.length - last).join(" "), room, SMALL));
 }
 
 /** Returns the name of a curve without redundant parts: the only body's name, and the plot's title. */

@@ -6,7 +6,7 @@ import { hasScene } from "../store.js";
 import { contacts, headingOf, names, plots } from "./curves.js";
 import { lanes } from "./record.js";
 
-export const AXIS = 20; // [px]
+export const AXIS = 20; // [px]; panels/timeline.css has the same
 export const LANE = 16;
 /** The height of a plot without the names of its curves, and that of a name [px]. */
 export const [PLOT, NAME] = [20, 13];

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from io import BytesIO
 from typing import Any
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.test_runs_panel import recorded, row
 from tests.helpers.page import drawn, say, shows, until
+from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
 
@@ -47,6 +51,26 @@ def test_all_rows_of_a_model_with_a_body_are_in_view_at_the_default_height(pages
     drawn(page)
     rows = page.locator(".timeline-rows")
     assert rows.evaluate("(one) => one.scrollHeight - one.clientHeight") == 0
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_axis_is_as_wide_as_the_timeline_and_without_a_scroll_bar_if_all_rows_are_in_view(pages: Pages, theme: str) -> None:
+    page = pages("doorway.py", width=1280, height=1000, theme=theme)
+    shows(page, "#status", "at its start")
+    rows = page.locator(".timeline-rows")
+    page.evaluate("async () => void ((await part('layout.js')).timelineHeight.value = 500)")
+    until(page, lambda: rows.evaluate("(one) => one.clientHeight > 300 && one.scrollHeight === one.clientHeight"))
+    drawn(page)
+    box = rows.bounding_box()
+    assert box is not None
+    width = int(rows.evaluate("(one) => one.clientWidth"))
+    assert width < box["width"]  # beside the rows is room for a scroll bar
+    with Image.open(BytesIO(page.screenshot(clip=box))) as picture:
+        within = [picture.getpixel((width - 2, y)) for y in range(20)]
+        beside = [picture.getpixel((int(box["width"]) - 6, y)) for y in range(picture.height)]
+    assert beside[:20] == within
+    assert len(set(within)) == 2  # its colour, and the line below it
+    assert len(set(beside[20:])) == 1
 
 
 def test_the_menus_of_all_parts_of_the_page_have_entries_of_one_size(page: Page) -> None:
@@ -100,18 +124,11 @@ def test_fields_and_sliders_of_parameters_are_in_columns_though_their_units_diff
     assert [len(edges(of, name)) for of in (fields, sliders) for name in ("left", "right")] == [1, 1, 1, 1]
 
 
-def test_headings_of_a_comparison_are_level_with_what_is_beside_them(pages: Pages) -> None:
+def test_headings_of_a_comparison_are_level_with_what_is_beside_them(pages: Pages, workbench: Served) -> None:
+    names = [recorded(workbench, "counting.py") for _ in range(2)]
     page = pages("counting.py", tab="runs")
-    page.click("#run")
-    shows(page, "#status", "ended")
-    page.click("#restart")
-    shows(page, "#status", "at its start")
-    page.click("#run")
-    shows(page, "#status", "ended")
-    expect(page.locator("tr.present")).to_contain_text("ended")  # the list has both
-    boxes = page.locator("tr[data-run] input[type=checkbox]")
-    for n in range(2):
-        boxes.nth(n).check()
+    for name in names:
+        row(page, name).get_by_role("checkbox").check()
     page.get_by_role("button", name="Compare", exact=True).click()
     header = page.locator("dialog.compare section header").first
     expect(header.locator("select")).to_be_visible()

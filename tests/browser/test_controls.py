@@ -64,6 +64,16 @@ def test_a_comma_is_no_decimal_point(blank: Page) -> None:
     ]
 
 
+def test_a_number_that_is_too_large_is_said_to_be_so(blank: Page) -> None:
+    written = [["number", "1e400"], ["whole number", " -1e999"], ["number", "Infinity"], ["number", "1e308"]]
+    assert blank.evaluate(READ, written) == [
+        {"problem": "the number is too large"},
+        {"problem": "the number is too large"},
+        {"problem": "must be a number"},
+        {"value": 1e308},
+    ]
+
+
 LATE = """async () => {
   const { state } = await part("store.js");
   document.querySelector("#scene iframe").contentWindow.scene = { drawnTime: () => 3601, choose() {} };

@@ -212,6 +212,25 @@ def test_levels_are_read_as_the_command_reads_them(blank: Page) -> None:
     assert blank.evaluate(LEVELS, list(written)) == [list(one) for one in written.values()]
 
 
+def test_levels_that_the_server_would_not_take_are_refused_in_words_of_the_form(pages: Callable[..., Page], design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments")
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    levels, foot = page.get_by_label("Levels of n"), page.locator(".foot")
+    start = "n: levels, each once, separated by commas; "
+    for text, problem in (
+        (", ".join(map(str, range(201))), "there are 201, and at most 200 are possible"),
+        ("é" * 1001, "one has 1,001 characters, and at most 1,000 are possible"),
+        ("1, 1e400", "the number is too large (got '1, 1e400')"),
+        ('"1', "the quotation marks are wrong (got '\"1')"),
+    ):
+        levels.fill(text)
+        expect(foot).to_have_text(f"{start}{problem}Run")
+        expect(levels).to_have_attribute("aria-invalid", "true")
+    levels.fill(", ".join(map(str, range(200))))
+    expect(foot).to_contain_text("1,600 trials")
+
+
 def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Callable[..., Page], design: str) -> None:
     page = pages(design.partition(":")[0], tab="experiments")
     answers = [

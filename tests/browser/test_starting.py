@@ -146,3 +146,22 @@ def test_the_time_of_the_present_run_is_that_of_the_moment(page: Page) -> None:
     page.click("#back")
     shows(page, "#time", "0.00 s")
     expect(row).to_contain_text("0.01 s")
+
+
+def test_a_file_whose_name_cannot_be_used_is_listed_with_the_reason(pages: Callable[..., Page], workbench: Served) -> None:
+    odd = workbench.folder / "at 12:30.py"
+    odd.write_text('"""Odd."""\n', encoding="utf-8")
+    try:
+        page = pages("doorway.py", tab="editor")
+        shows(page, "#status", "paused")
+        for choice in ("Model", "File"):
+            entry = page.get_by_label(choice, exact=True).get_by_role("option", name="at 12:30.py")
+            expect(entry).to_have_text("at 12:30.py: must have no colon")
+            expect(entry).to_be_disabled()
+        page.keyboard.press("Control+k")
+        page.keyboard.insert_text("at 12:30")
+        expect(page.get_by_role("dialog").get_by_role("option").first).to_contain_text("Model: at 12:30.py")
+        page.keyboard.press("Enter")
+        shows(page, ".palette-refusal", r"«Model: at 12:30\.py» is not possible now\. The path of a model file: must have no colon\.")
+    finally:
+        odd.unlink()

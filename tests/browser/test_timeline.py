@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import FloatRect, Page, expect
 
 from tests.helpers.page import becomes_true, drawn, say, shows, until
+from tests.helpers.paths import MODELS
 from tests.helpers.sessions import SLOW_PROGRAM
 from tests.helpers.workbench_server import Served
 
@@ -1226,6 +1227,54 @@ TIMES = """async () => {
   const times = [0, 12.345, 3599.99, 3600, 4512.3, 3659.999, 86_461.5];
   return [times.map((time) => timeText(time)), axis({ from: 0, to: 5000 }), axis({ from: 3590, to: 3602 }), axis({ from: 0, to: 3000 })];
 }"""
+
+
+NAMED_COLUMN = """async () => {
+  const { chosenColumn } = await part("timeline/rows.js");
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { drawing } = await part("timeline/canvas.js");
+  const { widthOf } = await part("parts/surface.js");
+  chosenColumn.value = 110;
+  const texts = [];
+  const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+  surface.text = (text, x, y, name, style = {}) => x < 30 && style.anchor === undefined && texts.push([text, x + widthOf(text, style)]);
+  drawTimeline(surface, drawing());
+  return texts;
+}"""
+"""Returns the names of rows and curves in a narrow column, each with the place of its end [px]."""
+NAME_AT = """async (name) => {
+  const { layout, scroll } = await part("timeline/rows.js");
+  return layout("").rows.find(({ label }) => label === name).y - scroll.value + 8;
+}"""
+"""Returns the height at which the name of a row is [px]."""
+
+
+def test_a_name_that_is_too_long_for_its_column_has_its_beginning_and_end_and_is_whole_at_the_pointer(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    long = "intention_of_the_walker_at_the_doorway"
+    file = workbench.folder / "long_names.py"
+    source = (MODELS / "doorway.py").read_text(encoding="utf-8")
+    file.write_text(re.sub(r"\bgoal\b", long, source), encoding="utf-8")
+    page = pages("long_names.py", width=1280, height=800)
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.2)
+    becomes_true(page, ALL_CURVES)
+    drawn(page)
+    names = page.evaluate(NAMED_COLUMN)
+    lane = next(text for text, _ in names if text.startswith("int"))
+    assert re.fullmatch(r"intent\w*…\w*doorway", lane)
+    assert len(lane) > 12
+    assert all(end <= 110 for text, end in names if "…" in text)
+
+    page.evaluate("async () => void ((await part('timeline/rows.js')).chosenColumn.value = 0)")
+    drawn(page)
+    tip = page.locator(".timeline-tip")
+    for label, text in ((long, long), ("clearance", "clearance at 0.20 s")):
+        page.mouse.move(box(page)["x"] + 40, box(page)["y"] + page.evaluate(NAME_AT, label))
+        expect(tip).to_contain_text(text)
+    expect(tip).to_contain_text("clearance left")  # each curve has its whole name, and its value at the playhead
+    file.unlink()
 
 
 def test_times_of_an_hour_or_more_are_in_hours_minutes_and_seconds(blank: Page) -> None:

@@ -152,7 +152,8 @@ def test_a_file_whose_name_is_no_utf8_hides_no_other(server: Served) -> None:
     odd = server.folder / os.fsdecode(b"odd\xff.py")
     odd.write_text('"Odd."\n', encoding="utf-8")
     try:
-        told = server.get("/api/models").json()["models"]
-        assert {"counting.py", r"odd\udcff.py"} <= {model["path"] for model in told}
+        told = {model["path"]: model["problem"] for model in server.get("/api/models").json()["models"]}
+        assert told["counting.py"] is None
+        assert told[r"odd\udcff.py"] == "must have no invisible or invalid characters"
     finally:
         odd.unlink()

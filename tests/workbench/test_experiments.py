@@ -85,7 +85,11 @@ def finished(workbench: Served) -> str:
 
 def test_designs_of_the_library_and_of_model_files_are_listed_without_running_them(workbench: Served) -> None:
     (workbench.folder / "bad_design.py").write_text("import nothing_like_this\n@design\ndef bad():\n    '''Never runs.'''\n", "utf-8")
+    unusable = workbench.folder / "bad:design.py"  # a name that no request can have
+    unusable.write_text("@design\ndef bad(): ...\n", "utf-8")
     listed = {one["id"]: one for one in workbench.get("/api/designs").json()["designs"]}
+    unusable.unlink()
+    assert not [name for name in listed if name.startswith("bad:")]
     assert listed[COUNTING] == {
         "id": COUNTING,
         "name": "counting",
@@ -98,7 +102,13 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
     assert (listed["warren_whang_1987"]["file"], listed["warren_whang_1987"]["model"]) == (None, "aperture_passage.py")
     assert listed["slow/counting_design.py:counting"]["model"] == "slow/counter.py"
     assert workbench.get("/api/designs").json()["processors"] == len(os.sched_getaffinity(0))
-    assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
+    assert workbench.get("/api/designs").json()["most"] == {
+        "participants": 1_000_000,
+        "trials": 1_000_000,
+        "workers": 256,
+        "levels": 200,
+        "characters": 1_000,
+    }
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
     assert "nothing_like_this" in answer.json()["error"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -38,6 +39,29 @@ def test_what_there_is(folder: ModelFolder, tmp_path: Path) -> None:
     (folder.root / "away").symlink_to(tmp_path, target_is_directory=True)
     (folder.root / "inside.py").symlink_to(folder.root / "one.py")
     assert folder.paths() == ["inside.py", "one.py", "tutorial/two.py"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there are no such names")
+def test_a_file_that_is_listed_is_opened_or_has_a_problem(folder: ModelFolder) -> None:
+    odd = {
+        "a:b.py": "must have no colon",
+        "back\\slash.py": "must be a path with slashes",
+        "zero\u200bwidth.py": "must have no invisible or invalid characters",
+        f"{'é' * 110}.py": "at most 200 bytes",
+    }
+    for name in odd:
+        (folder.root / name).write_text("", encoding="utf-8")
+    assert set(odd) < set(folder.paths())
+    for path in folder.paths():
+        problem = folder.problem_of(path)
+        if path in odd:
+            assert problem is not None
+            assert odd[path] in problem
+            with pytest.raises(FileError, match=re.escape(f"the path of a model file: {problem}")):
+                folder.read(path)
+        else:
+            assert problem is None
+            assert folder.read(path).path == path
 
 
 @pytest.mark.parametrize(

@@ -106,6 +106,22 @@ def test_a_reply_names_the_field_because_of_which_a_command_was_refused(server: 
     asyncio.run(talk())
 
 
+def test_a_page_can_ask_at_any_time_whether_the_workbench_is_there(server: Served, session: str) -> None:
+    async def talk() -> None:
+        address = f"ws://127.0.0.1:{server.port}/ws"
+        headers = {"authorization": f"Bearer {server.token}", "origin": server.url}
+        async with websockets.connect(address, additional_headers=headers) as socket:
+            await socket.send('{"type":"ping"}')  # before it shows a session
+            assert json.loads(await socket.recv()) == {"type": "pong"}
+        async with await attached(server, session) as socket:
+            await socket.send('{"type":"ping"}')
+            assert await heard(socket, lambda message: message["type"] == "pong") == {"type": "pong"}
+            await socket.send('{"type":"ping","more":1}')
+            assert "more" in (await heard(socket, lambda message: "replies" in message))["replies"][0]["error"]
+
+    asyncio.run(talk())
+
+
 def test_a_session_that_does_not_exist_is_refused(server: Served, session: str) -> None:
     async def talk() -> None:
         socket = await attached(server, session)

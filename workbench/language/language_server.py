@@ -19,8 +19,6 @@ LANGUAGE_MEMORY = 1_500
 """Maximum memory of the process [MB], if that of a model is not less."""
 MAX_WAITING = 20
 """Maximum number of questions that wait for their turn."""
-LONGEST_TEXT = 200_000
-"""Maximum length of a text that is read [characters]."""
 
 
 class TooManyQuestionsError(LanguageError):

@@ -10,6 +10,7 @@ import msgspec
 import actr3d
 from actr3d.errors import Actr3dError
 from workbench.language.answers import LanguageError
+from workbench.language.language_question import LanguageQuestion
 from workbench.worker.channel import Channel
 from workbench.worker.messages import CommandMessage, Leave, Reply, shortened
 
@@ -18,14 +19,13 @@ def serve(channel: Channel) -> None:
     """Answers questions until the server asks to end."""
     sys.path[:] = safe_path(Path(channel.start.folder))  # before jedi is imported
     from workbench.language.python_answers import PythonAnswers
-    from workbench.language.questions import Assistant, LanguageQuestion
+    from workbench.language.questions import Assistant
 
     assistant = Assistant(PythonAnswers(Path(channel.start.folder)))
-    decoder = msgspec.json.Decoder(LanguageQuestion)
     while not isinstance(request := channel.receive(), Leave):
         if isinstance(request, CommandMessage):
             try:
-                answer = assistant.answer(decoder.decode(request.command))
+                answer = assistant.answer(LanguageQuestion.model_validate_json(request.command))
                 channel.post(Reply(id=request.id, result=msgspec.json.encode(answer)))
             except LanguageError as error:
                 channel.post(Reply(id=request.id, error=shortened(str(error)), line=error.line))

@@ -1,4 +1,4 @@
-"""The questions of the page about a text, and their answers from ACT-R and Python."""
+"""Answers the questions of a page about a text, from ACT-R and Python."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import keyword
 import re
 import subprocess
 from dataclasses import asdict, replace
-from typing import Any, Literal
+from typing import Any
 
-import msgspec
 from ruff import find_ruff_bin
 
 from workbench.language import actr_answers
 from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, LanguageError, Renaming
 from workbench.language.explicit_names import ExplicitText
+from workbench.language.language_question import LanguageQuestion
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import PythonAnswers
 from workbench.language.references import References
@@ -24,19 +24,6 @@ FORMAT_TIME = 5.0
 """Maximum time that formatting may take [s]."""
 _MARK = "completed_here"
 """Takes the place of the name that is not written yet."""
-
-
-class LanguageQuestion(msgspec.Struct, frozen=True, kw_only=True):
-    """A question about a text."""
-
-    ask: Literal["complete", "document item", "document", "signature", "define", "rename", "format"]
-    path: str
-    """The model file inside the folder; the text may differ from it."""
-    text: str
-    at: int = 0
-    """The position: the number of UTF-16 code units before it, as the page counts."""
-    name: str = ""
-    """The label of a completion, or the new name."""
 
 
 class Assistant:

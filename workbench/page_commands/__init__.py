@@ -5,8 +5,8 @@ accept it. What only the worker of a run needs is imported in `carry_out` or `an
 """
 
 from actr3d.registry import import_modules
-from workbench.page_commands.command import COMMANDS, Name, PageCommand, PageMessage, PlainValue, Question, Seconds, Text
+from workbench.page_commands.command import COMMANDS, Name, PageCommand, PlainValue, Question, Seconds, Text
 
 import_modules(__name__, __path__)
 
-__all__ = ["COMMANDS", "Name", "PageCommand", "PageMessage", "PlainValue", "Question", "Seconds", "Text"]
+__all__ = ["COMMANDS", "Name", "PageCommand", "PlainValue", "Question", "Seconds", "Text"]

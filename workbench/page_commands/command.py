@@ -7,10 +7,11 @@ from contextlib import nullcontext
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, Field
 
 from actr3d.errors import Actr3dError, alternatives
 from actr3d.registry import Registry
+from workbench.page_message import PageMessage
 from workbench.worker.messages import Reply
 
 if TYPE_CHECKING:
@@ -40,12 +41,6 @@ def _plain(value: Any) -> Any:
 
 PlainValue = Annotated[bool | int | float | Annotated[str, Field(max_length=LONGEST_TEXT)] | None, BeforeValidator(_plain)]
 """A value that can be recorded."""
-
-
-class PageMessage(BaseModel):
-    """Base of everything that a page or a program sends."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class PageCommand(PageMessage):

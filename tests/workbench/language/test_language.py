@@ -28,7 +28,8 @@ from workbench.language import language_server
 from workbench.language.answers import LanguageError
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import text_at
-from workbench.language.language_server import LONGEST_TEXT, MAX_WAITING, LanguageServer, TooManyQuestionsError
+from workbench.language.language_question import LONGEST_TEXT
+from workbench.language.language_server import MAX_WAITING, LanguageServer, TooManyQuestionsError
 from workbench.language.language_worker import safe_path
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import PythonAnswers
