@@ -45,9 +45,8 @@ export async function listModels() {
   const listing = await call("GET", "/api/models");
   if (mine !== asked) return;
   folder.value = listing.folder;
-  const { can = [], cannot = [] } = Object.groupBy(listing.models, ({ problem }) => (problem ? "cannot" : "can"));
-  models.value = can;
-  unusable.value = cannot;
+  models.value = listing.models.filter(({ problem }) => !problem);
+  unusable.value = listing.models.filter(({ problem }) => problem);
   hasManual.value = listing.manual;
   noManual.value = listing.no_manual;
 }
