@@ -106,6 +106,9 @@ class Store:
         self.folder = Path(folder)
         path = self.folder / SPECIFICATION
         try:
+            for file in (path, self.folder / TRIALS, self.folder / LOCK):
+                if file.is_fifo():  # opening it would wait for a program that writes to it
+                    raise ExperimentError(f"'{self.folder}' holds no experiment: {file.name} is a pipe, not a file")
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ExperimentError(f"'{self.folder}' holds no experiment: cannot read {SPECIFICATION} ({reason_of(error)})") from None
