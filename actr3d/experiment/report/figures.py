@@ -111,9 +111,12 @@ def curves_figure(
         panes: The panes.
         x_label: The name of x, with its unit.
         y_label: The name of y, with its unit.
-        ticks: Places on x with their texts; empty to choose them.
+        ticks: Places on x with their texts; empty to choose them, or for the only place that there is.
         from_zero: Whether y begins at 0.
     """
+    places = {x for pane in panes for curve in pane.curves for x in curve.x}
+    if not ticks and len(places) == 1:
+        ticks = [(x, f"{x:g}") for x in places]
     labels = list(dict.fromkeys(curve.label for pane in panes for curve in pane.curves if curve.label))
     columns = min(len(panes), 2)
     rows = math.ceil(len(panes) / columns)
