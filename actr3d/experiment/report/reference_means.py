@@ -78,22 +78,19 @@ def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | N
     Raises:
         ExperimentError: If the file does not follow the schema.
     """
+    schema = schema_of(parts)
     if file is not None:
-        data = HumanFile(file).read(schema_of(parts))
+        data = HumanFile(file).read(schema)
         return (data, "") if data.rows or data.published else (None, f"{data.name}: {' '.join(data.notes)}")
     name, known = design.human, library_human_data()
     if name is None:
         return None, "The design names no human data, and none were given with --human."
     if name not in known:
         return None, f"The design names the human data '{name}', which the library does not have, and none were given with --human."
-    if not set(schema_of(parts).measures) & _measures_in(known[name]):
+    # The words of the file are enough to know whether a measure of the experiment occurs in it.
+    if set(schema.measures).isdisjoint(known[name].read_text(encoding="utf-8").replace("\n", ",").split(",")):
         return None, f"The published means '{name}' are of other measures than this experiment has."
-    return HumanFile(known[name]).read(schema_of(parts)), ""
-
-
-def _measures_in(path: Path) -> set[str]:
-    """Returns the words of a file: enough to know whether a measure of the experiment occurs in it."""
-    return set(path.read_text(encoding="utf-8").replace("\n", ",").split(","))
+    return HumanFile(known[name]).read(schema), ""
 
 
 def means_of_people(data: HumanData, parts: Sequence[Results]) -> ReferenceMeans:
@@ -213,14 +210,7 @@ def matched(results: Results, reference: ReferenceMeans, measure: str) -> Any:
 
 
 def left_out(results: Results, reference: ReferenceMeans, measure: str, cells: Any) -> list[Cell]:
-    """Returns the conditions of the means of a measure that are not compared.
-
-    Args:
-        results: The experiment.
-        reference: The means.
-        measure: The measure.
-        cells: The cells that both have, from `matched`.
-    """
+    """Returns the conditions of the means of a measure that are not compared: all but the cells that `matched` returned."""
     keys = ["group", *results.all_factors]
     both, beside = (
         {tuple((key, row[key]) for key in keys if not missing(row[key])): None for row in frame.to_dict("records")}
