@@ -11,8 +11,11 @@ def main() -> int:
     """Runs the command line; returns the exit code."""
     if sys.argv[1:2] and sys.argv[1] in RUNNING:
         _order_sets()
-    from actr3d.cli import main as run  # what is loaded before a restart is loaded twice
-
+    try:
+        from actr3d.cli import main as run  # what is loaded before a restart is loaded twice
+    except KeyboardInterrupt:  # loading takes up to a second
+        sys.stderr.write("stopped\n")
+        return 130
     return run()
 
 

@@ -18,7 +18,7 @@ from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import DesignError, SettingError, alternatives, reason_of
-from actr3d.output import ModelOutput, all_written, printing_to, standard_output
+from actr3d.output import ModelOutput, StandardOutput, all_written, printing_to, standard_output
 from actr3d.parameter_schema import Parameter
 from actr3d.recording.schema import versions
 from actr3d.runner.before_exit import before_the_end
@@ -202,6 +202,12 @@ def _count(text: str, most: int = MOST) -> int:
     return int(text)
 
 
+def _file(text: str) -> str:
+    if not text:
+        raise argparse.ArgumentTypeError("must be the name of a file (got '')")
+    return text
+
+
 def _folder(text: str) -> str:
     if not text:  # the value of a variable of the shell that is not set
         raise argparse.ArgumentTypeError("must be the name of a folder (got '')")
@@ -240,14 +246,14 @@ def _add_run(commands: Any) -> None:
         add_help=False,
         allow_abbrev=False,
     )
-    run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
+    run.add_argument("file", type=_file, metavar="FILE", nargs="?", help="the model file")
     general = [
         run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file"),
         run.add_argument("--seed", type=_seed, metavar="N", help="seed of all random choices (default: a new one)"),
         run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest"),
         run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)"),
         run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too"),
-        run.add_argument("--record", metavar="RECORDING", help="record everything to this new file"),
+        run.add_argument("--record", type=_file, metavar="RECORDING", help="record everything to this new file"),
         run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds"),
     ]
     run.set_defaults(function=run_command, parser=run, general=[name for option in general for name in option.option_strings])
@@ -261,9 +267,9 @@ def _add_replay(commands: Any) -> None:
         "with modules that are recorded or installed.",
         epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, "
         "of another format, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that "
-        "ran it; 130 it was interrupted.",
+        "ran it, or the output could not be written; 130 it was interrupted.",
     )
-    again.add_argument("file", metavar="RECORDING", help="the recording")
+    again.add_argument("file", type=_file, metavar="RECORDING", help="the recording")
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
@@ -274,8 +280,8 @@ def _add_bench(commands: Any) -> None:
         "bench",
         help="measure speed",
         description="Measures speed, mostly as ratios of two costs in one run. Without a name, lists all benchmarks.",
-        epilog="Exit codes: 0 all limits are met; 1 one is missed; 2 there is no such benchmark, or a package is missing; "
-        "130 it was interrupted.",
+        epilog="Exit codes: 0 all limits are met; 1 one is missed; 2 there is no such benchmark, a package is missing, or the output "
+        "could not be written; 130 it was interrupted.",
     )
     bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
@@ -301,7 +307,7 @@ def _add_experiment(commands: Any) -> None:
     experiment.add_argument("--check", action="store_true", help="check the design, run two trials, and print what would run")
     experiment.add_argument("--json", action="store_true", help="print one JSON object a line: progress, and what is found")
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
-    experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
+    experiment.add_argument("--record", type=_file, metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
 
 
@@ -410,7 +416,9 @@ def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argpa
         except (SettingError, DesignError) as error:
             print(f"error: {error}", file=sys.stderr)
             return 2
-        except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
+        except Exception as error:
+            if isinstance(sys.stdout, StandardOutput) and error is sys.stdout.trouble:
+                raise
             return _complain(error)
 
     return command
@@ -459,6 +467,8 @@ def _report(options: argparse.Namespace) -> int:
     return 0
 
 
+UNWRITTEN = {"replay": 2, "bench": 2}
+"""The exit codes if the output cannot be written, of the commands whose exit code 1 is a finding."""
 BESIDE_CHECK = ("workers", "scheduler", "out", "resume", "any_version")
 """The options of `actr3d experiment` that mean nothing for a check."""
 BESIDE_TRIAL = (*BESIDE_CHECK, "set", "participants", "trials", "check")
@@ -490,12 +500,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     if sys.stdout is None:  # it was closed before the command started
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    with standard_output(apart=False) as out, printing_to(out):
+        try:
+            code = _command(given)
+        except (OSError, SystemExit) as error:
+            unwritten = all_written(out, None)
+            if unwritten is None or (isinstance(error, OSError) and error is not unwritten):
+                raise
+        else:
+            unwritten = all_written(out, None)
+            if unwritten is None:
+                return code
+        _complain_of_output(unwritten)
+        return UNWRITTEN.get(given[0], 1)
+
+
+def _command(arguments: list[str]) -> int:
     parser = _parser()
     options, words = parser.parse_known_args(arguments)
     if options.command == "run":
         if options.help:
             return _help(options.parser, options.file)
-        _check_run(options, words, list(sys.argv[1:] if arguments is None else arguments))
+        _check_run(options, words, arguments)
     elif words:
         parser.error(f"unrecognized arguments: {' '.join(words)}")
     try:

@@ -234,6 +234,10 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
         (["bench", "core", "--fast"], "unrecognized arguments: --fast"),
         (["bench", "coer"], "no benchmark 'coer'; did you mean 'core'? There are: "),
         (["run"], "the following arguments are required: FILE"),
+        (["run", ""], "argument FILE: must be the name of a file (got '')"),
+        (["run", "model.py", "--record", ""], "argument --record: must be the name of a file (got '')"),
+        (["replay", ""], "argument RECORDING: must be the name of a file (got '')"),
+        (["experiment", "fan_effect", "--trial", "0", "--record", ""], "argument --record: must be the name of a file (got '')"),
         ([], "the following arguments are required: COMMAND"),
     ],
 )
@@ -331,6 +335,26 @@ def test_a_full_disk_is_one_clear_error(tmp_path: Path, words: list[str], source
     assert done.stderr.count("Traceback") == bool(message)
 
 
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    ("words", "code"), [(["replay", "run"], 2), (["bench"], 2), (["--version"], 1), (["--help"], 1), (["run", "model.py", "--help"], 1)]
+)
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_the_output_of_every_command_is_written_or_the_exit_code_says_that_it_is_not(
+    tmp_path: Path, words: list[str], code: int, unbuffered: str
+) -> None:
+    assert run(tmp_path, "print('x')", "--record", "run").returncode == 0
+    command, environment = [*COMMAND, *words], {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (code, "error: cannot write the output: No space left on device\n")
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (code, "")
+
+
 @pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
 def test_a_model_may_close_its_output(tmp_path: Path, words: list[str]) -> None:
     done = run(tmp_path, "import ccm, sys\nprint('said')\nsys.stdout.close()\nccm.Model().run(1)", *words)
@@ -375,3 +399,11 @@ def test_the_package_is_the_command(tmp_path: Path) -> None:
     }
     assert len(said) == 1
     assert said.pop().startswith(b"said {")
+
+
+def test_an_interruption_while_the_command_is_loaded_is_no_traceback(tmp_path: Path) -> None:
+    (tmp_path / "argparse.py").write_text("raise KeyboardInterrupt\n", encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(Path(actr3d.__file__).parents[1])])}
+    command = [sys.executable, "-m", "actr3d", "bench"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from datetime import date
 from typing import Any
 
 import pytest
@@ -132,6 +133,15 @@ def test_data_are_what_they_were_then() -> None:
     assert told == {"list": [1, [2]]}
     assert changed == {"list": "changed"}  # also of a change behind the buffer's back
     assert trace.select("state", "top")[-1].data == {"values": [1, [2]]}
+
+
+def test_data_of_a_modellers_event_are_plain_and_what_they_were_then() -> None:
+    model: Any = Model()
+    trace = model.traced()
+    values = [1, {2}]
+    model.emit("seen", values=values, since=date(2026, 1, 31), part=model)
+    values.append(3)
+    assert trace.select("seen")[0].data == {"values": [1, [2]], "since": "datetime.date(2026, 1, 31)", "part": "<top>"}
 
 
 def test_a_late_trace_is_complete_from_its_start() -> None:

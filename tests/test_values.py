@@ -135,13 +135,25 @@ def test_json_is_valid_for_numbers_and_characters_that_it_does_not_have() -> Non
     assert strictly(to_json(Untouchable())) == "<Untouchable>"
 
 
-@pytest.mark.parametrize("value", [[1, "a", None, True, {"b": [1.5]}], "half \ud800", {"n": float("inf")}, [10**6000], "ü", ["x" * 1000]])
+@pytest.mark.parametrize(
+    "value",
+    [
+        [1, "a", None, True, {"b": [1.5]}],
+        "half \ud800",
+        {"n": float("inf")},
+        {"n": [None, float("nan")]},
+        [10**6000],
+        [-(2**64), 1e22, 5e-324, -0.0],
+        "ü",
+        ["x" * 1000],
+    ],
+)
 def test_json_of_what_is_plain_already_is_the_same(value: Any) -> None:
-    assert plain_to_json(value) == to_json(value)
+    assert strictly(plain_to_json(value)) == strictly(to_json(value))
 
 
 def test_json_of_what_is_not_plain_after_all_is_that_of_its_plain_form() -> None:
     endless: list[Any] = []
     endless.append(endless)
     for value in ({1, 2}, {"of": object()}, endless):
-        assert plain_to_json(value) == to_json(value)
+        assert strictly(plain_to_json(value)) == strictly(to_json(value))

@@ -19,6 +19,7 @@ import tempfile
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, BinaryIO
 
@@ -35,6 +36,9 @@ LOOK = 1.0
 """The interval at which the process is checked [s]."""
 ATTEMPTS = 3
 """The number of attempts at a trial whose process ends without an answer; another program may have ended it."""
+
+FOLDER = "actr3d-trials-"
+"""The beginning of the name of a folder for temporary files."""
 
 LEFT: set[str] = set()
 """The clients that have left the cluster; no more of their trials are started."""
@@ -147,7 +151,7 @@ class TrialProcess:
         self._check_open()
         if self._process is None:
             # The order of sets of texts is the same in every process.
-            self._folder = tempfile.mkdtemp(prefix="actr3d-trials-")
+            self._folder = tempfile.mkdtemp(prefix=FOLDER)
             environment = {**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": self._folder}
             command = [sys.executable, "-m", "actr3d.experiment.trial_process", self._folder]
             self._process = subprocess.Popen(
@@ -289,4 +293,7 @@ def _read(questions: BinaryIO, asked: SimpleQueue[str | int], folder: str) -> No
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    given = Path(sys.argv[1] if len(sys.argv) > 1 else "")
+    if not given.name.startswith(FOLDER) or not given.is_dir() or any(given.iterdir()):  # it will be deleted
+        sys.exit(f"TrialProcess starts this program with a new folder for temporary files (got {sys.argv[1:]})")
+    main(str(given))

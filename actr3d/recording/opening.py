@@ -38,7 +38,8 @@ def opened(path: Path) -> sqlite3.Connection:
     _wait_for_journal(path)
     try:
         # If a killed program left its write-ahead log, SQLite must write to the file in order to read it.
-        file = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
+        # A program that runs a model in a thread is compared with its recording in that thread.
+        file = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None, check_same_thread=False)
         file.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_VALUE)
         file.execute("PRAGMA trusted_schema=OFF")
     except sqlite3.Error as error:

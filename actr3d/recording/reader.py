@@ -59,6 +59,7 @@ class Recorded:
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
         self._made_here: bool | None = None
+        self._closed = False
         self._file = opened(self.path)
         try:
             self._written_facts = self._begin()
@@ -249,6 +250,8 @@ class Recorded:
         try:
             yield
         except (sqlite3.Error, ValueError, TypeError, KeyError, IndexError, OverflowError, RecursionError) as error:
+            if self._closed:
+                raise RecordingError(f"the recording '{self.path}' is closed; open it again") from None
             raise RecordingError(f"the recording '{self.path}' is damaged: {_words(error)}") from None
 
     def copy_to(self, path: Path) -> None:
@@ -279,7 +282,8 @@ class Recorded:
         return show_in_notebook(self, trust=trust, height=height)
 
     def close(self) -> None:
-        """Closes the file."""
+        """Closes the file; nothing more can be read from it."""
+        self._closed = True
         self._file.close()
 
     def __enter__(self) -> Self:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 import sqlite3
 from array import array
 from collections import deque
@@ -27,6 +28,7 @@ from actr3d.trace import TraceEvent
 from actr3d.values import escape_surrogates, plain_to_json
 
 FULL = "the disk is full"
+GONE = "it was deleted, moved or replaced during the run"
 INTERVAL = 0.25
 """The interval at which new items are written, besides on request [s of real time]; a killed run loses at most the items of one
 interval."""
@@ -34,9 +36,6 @@ BLOB = 1_000_000
 """The approximate size of a row of states [bytes]."""
 MAX_EVENTS = 10_000
 """The maximum number of events in a row."""
-BLOCK = 32
-"""The number of events that are converted to JSON at once: one that JSON cannot represent slows down its block alone."""
-
 MARK_BYTES = 4 * 8
 """The size of the marks of a state [bytes]."""
 
@@ -113,6 +112,7 @@ class Writer:
 
     def __init__(self, path: Path, facts: Sequence[tuple[str, str]]) -> None:
         self.path = path
+        self._absolute = path.absolute()  # the program may change its working directory
         self.failure: RecordingError | None = None
         """Why writing stopped; None while it works."""
         # One thread appends, another removes, and neither waits for the other.
@@ -199,10 +199,21 @@ class Writer:
             except BaseException as error:
                 # Items may be lost, whatever was raised: nothing may be written after a gap.
                 reason = _reason(error)
-                advice = "; make room on the disk, then run it again" if reason == FULL else ""
-                self.failure = _unwritable(self.path, reason, f"{self._kept_text()}{advice}")
+                if self._created and not self._is_in_place():
+                    self.failure = _unwritable(self.path, GONE, "; if it was moved, look for it there")
+                else:
+                    advice = "; make room on the disk, then run it again" if reason == FULL else ""
+                    self.failure = _unwritable(self.path, reason, f"{self._kept_text()}{advice}")
                 if not isinstance(error, Exception):
                     raise
+
+    def _is_in_place(self) -> bool:
+        """Returns whether the path still is that of the file that this writer has created."""
+        try:
+            status = self._absolute.stat()
+        except OSError:
+            return False
+        return (status.st_dev, status.st_ino) == self._identity
 
     def _kept_text(self) -> str:
         """Returns how much is kept of a recording that can no longer be written; removes the file if it has nothing of the run."""
@@ -214,16 +225,18 @@ class Writer:
             return f"; the first {some} of the run are kept, nothing of what came after"
         with suppress(sqlite3.Error, AttributeError):  # it may not have been opened
             self._file.close()
-        _remove(self.path)
+        _remove(self._absolute)
         return "; nothing was written"
 
     # -- the file
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
-        self.path.open("xb").close()
+        with self.path.open("xb") as new:
+            status = os.fstat(new.fileno())
+        self._identity = status.st_dev, status.st_ino
         self._created = True
         # The absolute path, because SQLite gives names such as `:memory:` a special meaning.
-        self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
+        self._file = sqlite3.connect(self._absolute, isolation_level=None, check_same_thread=False)
         # The beginning and the end of a run do not wait for the disk, only for the system; the thread waits in between.
         self._file.execute("PRAGMA synchronous=OFF")
         # Others can read the file during the run, and what is committed survives if the program is killed.
@@ -243,7 +256,7 @@ class Writer:
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
             return
-        rows = [(part, _to_json(part)) for part in _parts(events, MAX_EVENTS)]
+        rows = [(part, _to_json(part, _converted)) for part in _parts(events, MAX_EVENTS)]
         self._transact(self._insert_all, rows, states, facts, commands, answers)
 
     def _insert_all(
@@ -257,7 +270,7 @@ class Writer:
         for part, text in events:
             self._insert("events", len(part), len(part), text)
         for some in _parts(answers, MAX_EVENTS):
-            self._insert("answers", len(some), len(some), json.dumps([plain_answer(answer) for answer in some]))
+            self._insert("answers", len(some), len(some), _to_json([plain_answer(answer) for answer in some], json.dumps))
         for row in _parts(states, max(1, BLOB // len(states[0].data)) if states else 1):
             data = b"".join([state.data for state in row])
             marks = array("q", [mark for state in row for mark in (state.run, state.tick, state.events, len(state.data))]).tobytes()
@@ -375,14 +388,11 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
     return [things[start : start + most] for start in range(0, len(things), most)]
 
 
-def _to_json(events: list[TraceEvent]) -> str:
-    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
-    return f"[{', '.join(plain_to_json(block, _one_by_one)[1:-1] for block in _parts(events, BLOCK))}]"
-
-
-def _one_by_one(events: list[TraceEvent]) -> str:
-    return f"[{', '.join(plain_to_json(event, _converted) for event in events)}]"
+def _to_json(items: Sequence[Any], otherwise: Callable[[Any], str]) -> str:
+    """Returns plain items as one JSON list; `otherwise` converts those that JSON cannot represent."""
+    return f"[{','.join([plain_to_json(item, otherwise) for item in items])}]"
 
 
 def _converted(event: TraceEvent) -> str:
+    """Returns an event as JSON; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
     return plain_to_json([event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]])

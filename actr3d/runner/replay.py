@@ -210,12 +210,15 @@ def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Compa
         trouble: Says that the run has ended, where the recorded one went on.
     """
     left, difference, unfinished = comparator.rest(), comparator.difference, 0
-    if not (recorded.closed or recorded.failed):
+    after: list[str] = []
+    if comparator.interrupted:
+        after = [f"not checked: {_counted(left)} after that"] if left else []
+        left = {}
+    elif not (recorded.closed or recorded.failed):
         unfinished = left.pop("event", 0)
         left = {kind: count for kind, count in left.items() if kind == "state"}  # the rest may be of the tick that did not end
     if difference is None and left:
-        more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
-        difference = f"{trouble} after {comparator.events:,} events; the recording holds {more} more"
+        difference = f"{trouble} after {comparator.events:,} events; the recording holds {_counted(left)} more"
     end = _recorded_end(recorded)
     ignored, notes = _unchecked(recorded, comparator)
     differs = first_difference(recorded.facts, comparator.facts, ignored)
@@ -228,9 +231,13 @@ def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Compa
         events=comparator.events,
         difference=difference,
         to_its_end=end is None,
-        notes=(*([] if end is None else [end]), *notes),
+        notes=(*([] if end is None else [end]), *after, *notes),
         unfinished=unfinished,
     )
+
+
+def _counted(left: dict[str, int]) -> str:
+    return ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
 
 
 def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], list[str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from threading import RLock
 from typing import Any, TypeVar
 
 from actr3d.actr.kernel.run_limits import Contacts, EndOfRun
@@ -15,6 +16,8 @@ from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path
 
 Thing = TypeVar("Thing")
+INTERRUPTED = {"by": "error", "error": KeyboardInterrupt.__name__}
+"""The data of the event `stop` of a run that the user interrupted (Ctrl-C)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +53,8 @@ class Differs(EndOfRun):
 class Comparator:
     """Compares a run with a recording, in place of the run's recorder: facts, events, states, answers and commands, each in order.
 
+    A program may use it in several threads.
+
     Args:
         recorded: The recording.
         open_end: Whether the run may do more than is recorded, because it was interrupted.
@@ -66,7 +71,12 @@ class Comparator:
         """How many ends of ticks were compared."""
         self.ended_first = False
         """Whether the recording ended before the replay did, which is allowed for an interrupted run (`open_end`)."""
+        self.interrupted = False
+        """Whether the recording ended where the user interrupted the program (`open_end`): what it did after that cannot be repeated."""
         self.difference: str | None = None
+        self._unreadable: Exception | None = None
+        """Why the recording can no longer be read."""
+        self._comparing = RLock()
         self.facts: dict[str, Any] = {}
         """The facts of the new run; compared when it is over."""
         self._detached = False
@@ -88,7 +98,14 @@ class Comparator:
         """
         if self._detached:
             return
+        with self._comparing:
+            self._event(event)
+
+    def _event(self, event: TraceEvent) -> None:
         then = self._next(self._events)
+        if self._open_end and then is not None and then.kind == "stop" and then.data == INTERRUPTED:
+            self.ended_first = self.interrupted = True
+            raise Differs
         self.events += 1
         self._compare(f"event {self.events} at {event.time:g} s", None if then is None else then.to_json(), event.to_json())
 
@@ -103,6 +120,10 @@ class Comparator:
         """
         if self._detached:
             return
+        with self._comparing:
+            self._state(run, tick, data, contacts)
+
+    def _state(self, run: int, tick: int, data: bytes, contacts: Contacts) -> None:
         then = self._next(self._states)
         self.states += 1
         recorded = None if then is None else self._moment(then.run, then.tick)
@@ -125,10 +146,11 @@ class Comparator:
         """
         if self._detached:
             return
-        then = self._next(self._answers)
-        self.answers += 1
-        now = json.dumps(plain_answer((run, tick, body, word, value)))
-        self._compare(f"answer {self.answers}", None if then is None else json.dumps(then), now)
+        with self._comparing:
+            then = self._next(self._answers)
+            self.answers += 1
+            now = json.dumps(plain_answer((run, tick, body, word, value)))
+            self._compare(f"answer {self.answers}", None if then is None else json.dumps(then), now)
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
         """Compares a command of a user.
@@ -138,9 +160,10 @@ class Comparator:
         """
         if self._detached:
             return
-        then = self._next(self._commands)
-        self.commands += 1
-        self._compare(f"command {self.commands}", None if then is None else json.dumps(then), json.dumps((run, tick, data)))
+        with self._comparing:
+            then = self._next(self._commands)
+            self.commands += 1
+            self._compare(f"command {self.commands}", None if then is None else json.dumps(then), json.dumps((run, tick, data)))
 
     def _next(self, things: Iterator[Thing]) -> Thing | None:
         """Returns the next recorded thing of a kind; None where there is none.
@@ -150,7 +173,11 @@ class Comparator:
         """
         if self.difference is not None or self.ended_first:
             raise Differs
-        then = next(things, None)
+        try:
+            then = next(things, None)
+        except Exception as error:
+            self._unreadable = error  # the program may catch it
+            raise
         if then is None and self._open_end:
             self.ended_first = True
             raise Differs
@@ -171,7 +198,13 @@ class Comparator:
         return f"tick {tick} ({seconds(tick * self._period):g} s)" + (f" of {where}" if run != 1 else "")
 
     def rest(self) -> dict[str, int]:
-        """Returns how many recorded items of each kind the replay has not reached; kinds that are complete are left out."""
+        """Returns how many recorded items of each kind the replay has not reached; kinds that are complete are left out.
+
+        Raises:
+            RecordingError: If the recording could not be read further at some point, so that not everything was compared.
+        """
+        if self._unreadable is not None:
+            raise self._unreadable
         things = {"event": self._events, "state": self._states, "answer": self._answers, "command": self._commands}
         left = {kind: sum(1 for _ in more) for kind, more in things.items()}
         return {kind: count for kind, count in left.items() if count}

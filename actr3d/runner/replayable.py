@@ -24,7 +24,7 @@ def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> N
     _check_facts(recorded)
     if not any_version:
         _check_versions(recorded.facts["versions"])
-    if not (recorded.over or recorded.state_count or recorded.event_count):
+    if not (recorded.finished or recorded.state_count or recorded.event_count):
         raise RecordingError(
             f"the recording '{recorded.path}' holds nothing to compare: its run was left or interrupted before anything was written"
         )

@@ -17,6 +17,7 @@ from actr3d.simulation.stdout_capture import StdoutCapture
 from actr3d.simulation.tick_contacts import TickContacts
 from actr3d.trace import Listener, Run, Trace, TraceEvent
 from actr3d.trace_kinds import LEVELS
+from actr3d.values import plain
 from actr3d.world import World
 
 
@@ -177,7 +178,7 @@ class EventLog:
     def result(self, time: int, data: dict[str, Any]) -> None:
         """Traces the result of the run, which ended at a time [us]."""
         if self.trace is not None and self.trace.production:
-            self.trace.emit(time, "top", "result", data)
+            self.trace.emit(time, "top", "result", plain(data))
 
     @contextmanager
     def holding(self) -> Generator[None]:

@@ -69,6 +69,11 @@ class Lockstep:
         """Whether it cannot continue from here: a tick is incomplete."""
         return self._phase != "ready"
 
+    @property
+    def running(self) -> bool:
+        """Whether its agents or bodies are doing something at this moment."""
+        return self._phase == "running"
+
     def fail(self) -> None:
         """Prevents the run from continuing from here, because the present is not what it should be."""
         self._phase = "failed"
@@ -105,9 +110,13 @@ class Lockstep:
         self._expect("ready", "tick")
         if self._limits is not None and not self.may_tick():
             self._limits.refuse(self._end)
-        self._phase = "failed"
-        with self._stdout:
-            self.agents.run(self._period)
+        self._phase = "running"
+        try:
+            with self._stdout:
+                self.agents.run(self._period)
+        except BaseException:
+            self.fail()
+            raise
         self._phase = "ticked"
 
     def tock(self) -> tuple[Any, ...]:
@@ -121,7 +130,17 @@ class Lockstep:
             Exception: What a body raises; a note names the modeller's line.
         """
         self._expect("ticked", "tock")
-        self._phase = "failed"
+        self._phase = "running"
+        try:
+            answers = self._tock()
+        except BaseException:
+            self.fail()
+            raise
+        self.ticks += 1
+        self._phase = "ready"
+        return answers
+
+    def _tock(self) -> tuple[Any, ...]:
         world, outbox = self._world, self.agents.outbox
         questions: list[Request] = []
         if outbox:
@@ -136,8 +155,6 @@ class Lockstep:
         if questions:
             answers = tuple(_ask(request, world.bodies[request.body].get) for request in questions)
             self._answer(questions, answers)
-        self.ticks += 1
-        self._phase = "ready"
         return answers
 
     def repeat_tick(self, answers: tuple[Any, ...]) -> None:

@@ -10,6 +10,7 @@ import mujoco
 from mujoco import MjData, MjModel
 
 from actr3d.clock import seconds
+from actr3d.errors import SimulationError
 from actr3d.simulation.global_random import GlobalRandom
 from actr3d.world import World, WorldState
 
@@ -79,7 +80,13 @@ class Observers:
         return self._physics.observed
 
     def add(self, observer: Observer, *, of_calls: bool = False) -> None:
-        """Adds an observer of each moment, or of the end of each call."""
+        """Adds an observer of each moment, or of the end of each call.
+
+        Raises:
+            SimulationError: If it is not a function.
+        """
+        if not callable(observer):
+            raise SimulationError(f"observe(observer): must be a function that takes a Glimpse (got {observer!r})")
         (self._of_calls if of_calls else self._observers).append(observer)
 
     def show(self, make: Callable[[], Glimpse], *, of_calls: bool = False) -> None:

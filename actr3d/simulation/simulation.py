@@ -158,7 +158,8 @@ class Simulation:
         """Runs the agents for one period, after carrying out the commands that other threads have submitted.
 
         Raises:
-            SimulationError: If the last tick has had no tock, or has failed; if this is another thread, or an observer.
+            SimulationError: If the last tick has had no tock, or has failed; if this is another thread, an observer, or what an agent or
+                a body does.
             Exception: What an agent raises.
         """
         self._enter()
@@ -297,6 +298,11 @@ class Simulation:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
         if self._observers.looking:
             raise SimulationError("observers, listeners and `until` cannot step or change the simulation")
+        if self.timeline.running:
+            raise SimulationError(
+                "what an agent or a body does cannot run or change the simulation; an agent ends the run with self.stop(), and lets time "
+                "pass with yield"
+            )
 
     # -- commands
 
@@ -420,6 +426,9 @@ class Simulation:
         Args:
             observer: The function.
             of_calls: Whether it is called at the end of each `run`, `step`, `seek` and `command` instead, also of one that fails.
+
+        Raises:
+            SimulationError: If it is not a function.
         """
         self._observers.add(observer, of_calls=of_calls)
 
@@ -450,7 +459,10 @@ class Simulation:
 
         Raises:
             ParameterError: If nothing is traced.
+            SimulationError: If it is not a function.
         """
+        if not callable(listener):
+            raise SimulationError(f"listen(listener): must be a function that takes a TraceEvent (got {listener!r})")
 
         def listen_aside(event: TraceEvent) -> None:
             with self.only_looking():
@@ -473,11 +485,13 @@ class Simulation:
         """Adds a measure, which reads every physics step from the start of the run on; it computes the run's result.
 
         Raises:
-            SimulationError: If the run has begun already, or has a measure.
+            SimulationError: If the run has begun already, or has a measure; if it is not an object with the methods of a `Measure`.
             Exception: What the measure raises, if the world lacks what it measures.
         """
         if self.timeline.begun or self._measure is not None:
             raise SimulationError("measure() must be called once, before the run starts")
+        if isinstance(measure, type) or not all(callable(getattr(measure, name, None)) for name in ("begin", "look", "result")):
+            raise SimulationError(f"measure(measure): must be an object with the methods begin, look and result (got {measure!r})")
         with self.only_looking():
             measure.begin(self.world)
         self.world.watchers.append(measure.look)

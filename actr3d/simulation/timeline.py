@@ -127,6 +127,8 @@ class Timeline:
         self._log = log
         self._history = History(world.state())
         self._lockstep: Lockstep | None = None
+        self._beginning = False
+        """Whether the agents are being made."""
 
     @property
     def begun(self) -> bool:
@@ -138,12 +140,23 @@ class Timeline:
         """The present; makes the agents if there are none yet.
 
         Raises:
-            SimulationError: If an agent cannot be made.
+            SimulationError: If an agent cannot be made, or the function that makes one asks for the present.
         """
         if self._lockstep is None:
-            self._lockstep = self._begin()
+            if self._beginning:
+                raise SimulationError("the agents are being made: what makes them cannot use the agents, or run or change the simulation")
+            self._beginning = True
+            try:
+                self._lockstep = self._begin()
+            finally:
+                self._beginning = False
             self._log.state(0)
         return self._lockstep
+
+    @property
+    def running(self) -> bool:
+        """Whether agents or bodies are doing something at this moment."""
+        return self._lockstep is not None and self._lockstep.running
 
     @property
     def ticks(self) -> int:

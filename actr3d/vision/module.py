@@ -179,6 +179,7 @@ class Vision(WithParameters, Searching):
         self._joined("view")
         if not isinstance(bottom_up, bool):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
             raise VisionError(f"vision '{self._path}': bottom_up: must be True or False (got {bottom_up!r})")
+        self._learn_detectors()
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
         waits = {"waits": self._top_down is not None} if bottom_up else {}
         self._trace_request("request", pattern=pattern, asked=query.asked, bottom_up=bottom_up, **waits)
@@ -377,7 +378,14 @@ class Vision(WithParameters, Searching):
         search.outcome = outcome_of(data)
         self.emit("sight", **data, **({} if slots is None else {"chunk": slots}))
 
+    def _learn_detectors(self) -> None:
+        """Adds the detectors that were registered after the module was made, such as those below the agent in its file."""
+        if not DETECTORS.keys() <= self._detectors.keys():
+            self._detectors = {**DETECTORS, **self._detectors}
+            self._saliences = saliences_of(self.salience, self._detectors)
+
     def _kinds(self) -> dict[str, tuple[str, ...]]:
+        self._learn_detectors()
         return {name: slot_names(one.finds) for name, one in self._detectors.items()}
 
     def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:

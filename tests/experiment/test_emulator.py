@@ -70,8 +70,8 @@ def works_below_a_third(points: Any, data: Any, number: int) -> Emulator:
 
 
 def profile(model: Model, axes: int, data: Any, axis: int) -> tuple[float | None, float | None]:
-    """Returns the bounds of the interval from the model itself: at each step, SciPy finds the least squares over the other parameters."""
-    grid, starts = np.linspace(0, 1, 101), [np.full(axes, part) for part in (0.2, 0.5, 0.8)]
+    """Returns the bounds of the interval from the model itself: at each value, SciPy finds the least squares over the other parameters."""
+    grid, starts = np.linspace(0, 1, 21).tolist(), [np.full(axes, part) for part in (0.2, 0.5, 0.8)]
 
     def least(low: Any, high: Any) -> float:
         def differences(point: Any) -> Any:
@@ -86,8 +86,19 @@ def profile(model: Model, axes: int, data: Any, axis: int) -> tuple[float | None
 
     free = len(data) - axes
     most = least(np.zeros(axes), np.ones(axes)) * (1 + stdtrit(free, 0.975) ** 2 / free)
-    inside = [float(value) for value in grid if at(value) <= most]
-    return None if inside[0] == 0 else inside[0], None if inside[-1] == 1 else inside[-1]
+
+    def bound(inside: float, outside: float) -> float:
+        while abs(outside - inside) > 0.005:
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if at(middle) <= most else (inside, middle)
+        return inside
+
+    inside = [number for number, value in enumerate(grid) if at(value) <= most]
+    low, high = inside[0], inside[-1]
+    return (
+        None if low == 0 else bound(grid[low], grid[low - 1]),
+        None if high == len(grid) - 1 else bound(grid[high], grid[high + 1]),
+    )
 
 
 @pytest.mark.daily(1)

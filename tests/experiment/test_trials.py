@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import re
 import shutil
 import signal
 import sqlite3
@@ -31,7 +32,7 @@ from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
 from actr3d.experiment.trial_measures import variables_set_in
-from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
+from actr3d.experiment.trial_process import FOLDER, TIME_LIMIT, TrialProcess
 from tests.helpers.experiments import COUNTER, trial_processes, write_experiment
 from tests.helpers.folders import not_writable
 
@@ -225,7 +226,7 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_process_of_trials_whose_answers_nobody_reads_leaves_no_files(tmp_path: Path) -> None:
     specification = specify(str(write_experiment(tmp_path))).specification.to_json()
-    folder = tmp_path / "temporary"
+    folder = tmp_path / f"{FOLDER}1"
     folder.mkdir()
     command = [sys.executable, "-m", "actr3d.experiment.trial_process", str(folder)]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
@@ -239,6 +240,24 @@ def test_a_process_of_trials_whose_answers_nobody_reads_leaves_no_files(tmp_path
     process.stdin.close()
     process.wait(60)
     assert not folder.exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "files"),
+    [("my_work", 0), *[pytest.param(*case, marks=pytest.mark.slow) for case in ((f"{FOLDER}1", 1), (f"{FOLDER}2", None), (None, None))]],
+)
+def test_a_process_that_is_started_by_hand_deletes_no_folder(name: str | None, files: int | None, tmp_path: Path) -> None:
+    folder = tmp_path / (name or "")
+    if files is not None:
+        folder.mkdir()
+        for number in range(files):
+            (folder / f"{number}.txt").touch()
+    there = sorted(tmp_path.rglob("*"))
+    command = [sys.executable, "-m", "actr3d.experiment.trial_process", *([] if name is None else [str(folder)])]
+    ended = subprocess.run(command, input="", capture_output=True, text=True, start_new_session=True, timeout=60)
+    assert ended.returncode == 1
+    assert re.fullmatch(r"TrialProcess starts this program with a new folder for temporary files \(got .*\)\n", ended.stderr)
+    assert sorted(tmp_path.rglob("*")) == there
 
 
 def test_nothing_is_left_of_processes_that_were_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

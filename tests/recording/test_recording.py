@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import signal
 import sqlite3
 import subprocess
@@ -238,6 +239,29 @@ def test_a_reader_does_not_hold_up_the_end(tmp_path: Path) -> None:
         recording.close()
         assert recorded.event_count == 1  # it is read as it was then
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+@pytest.mark.parametrize("how", ["deleted", "moved", "replaced"])
+def test_a_recording_that_is_taken_away_during_the_run_is_reported_as_that(how: str, tmp_path: Path) -> None:
+    path, moved = tmp_path / "run", tmp_path / "moved"
+    recording = Recording(path, {"kind": "program"})
+    recording.event(TraceEvent(0, "agent", "output", {"text": "one"}))
+    recording.flush()
+    path.rename(moved)
+    if how != "moved":
+        moved.unlink()
+    if how == "replaced":
+        path.write_text("precious", encoding="utf-8")
+    recording.event(TraceEvent(1, "agent", "output", {"text": "two"}))
+    message = f"cannot write the recording '{path}': it was deleted, moved or replaced during the run; if it was moved, look for it there"
+    with pytest.raises(RecordingError, match=f"^{re.escape(message)}$"):
+        recording.close()
+    if how == "moved":
+        with Recorded(moved) as recorded:
+            assert recorded.event_count == 2
+    assert [(one.name, one.read_bytes()[:8]) for one in tmp_path.iterdir() if one != moved] == (
+        [("run", b"precious")] if how == "replaced" else []
+    )
 
 
 SLOW = "import time; simulation.observe(lambda seen: time.sleep(0.002)); "

@@ -12,6 +12,10 @@ from pathlib import Path
 import pytest
 
 from actr3d.cli import main
+from actr3d.errors import RecordingError
+from actr3d.recording import Recorded
+from actr3d.runner.replay_diff import Comparator
+from actr3d.trace import TraceEvent
 from tests.helpers.commands import run_command
 from tests.helpers.recording_forgery import forge
 
@@ -144,3 +148,82 @@ def test_forged_helpers_are_refused_in_one_line(path: Path, capsys: pytest.Captu
     assert main(["replay", str(path)]) == 2
     error = "error: the recording contains helper modules that no program can have loaded: Python uses modules of these names (os)\n"
     assert capsys.readouterr() == ("", error)
+
+
+THREADS = """import threading
+from actr3d.actr import *
+class Counter(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n!4"):
+        print(n)
+        goal.set("count %d" % (int(n) + 1))
+    def end(goal="count 4"):
+        self.stop()
+thread = threading.Thread(target=lambda: Counter().run())
+thread.start()
+thread.join()
+print("joined")
+"""
+
+
+def test_a_program_that_runs_its_model_in_a_thread_is_compared(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = path.with_name("model.py")
+    file.write_text(THREADS, encoding="utf-8")
+    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 0
+    with Recorded(path) as recorded:
+        count = recorded.event_count
+    assert count > 10
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 0
+    assert capsys.readouterr().out == f"every byte agrees: {count} events\n"
+    forge(path, """UPDATE events SET data = replace(data, '"text": "2"', '"text": "7"')""")
+    assert main(["replay", str(path)]) == 1
+    assert '"text": "7"' in capsys.readouterr().out
+
+
+def test_what_can_no_longer_be_read_never_agrees(path: Path) -> None:
+    record(path)
+    with Recorded(path) as recorded:
+        comparator = Comparator(recorded)
+    event = TraceEvent(0, "model", "output", {"text": "begins"})
+    with pytest.raises(RecordingError, match="is closed"):
+        comparator.event(event)
+    with pytest.raises(RecordingError, match="is closed"):
+        comparator.rest()
+
+
+@pytest.mark.parametrize(("then", "note"), [("pass", ""), ("print('bye')", "; not checked: 1 event after that")])
+def test_a_program_that_was_interrupted_in_a_production_agrees_until_then(
+    then: str, note: str, path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = PROGRAM.format(first="pass", last="pass")
+    source = source.replace(
+        "    def end(", "    def pressed(goal='count 2'):\n        stop_here()\n        goal.set('count 3')\n    def end("
+    )
+    source = source.replace("count ?n!4", "count ?n!4!2")
+    source = source.replace("again = ", "def stop_here():\n    if not again: raise KeyboardInterrupt\nagain = ")
+    source = source.replace("Counter().run()\n", f"try:\n    Counter().run()\nfinally:\n    if not again: {then}\n")
+    file = path.with_name("model.py")
+    file.write_text(source, encoding="utf-8")
+    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 130
+    monkeypatch.setenv("AGAIN", "1")
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("agrees up to the end of the recording: ")
+    assert out.endswith(f"; the recording says that the run was interrupted at 0.15 s, which cannot be checked{note}\n")
+
+
+@pytest.mark.parametrize(("source", "failure"), [("def f(:", "model.py:1: invalid syntax"), ("1 / 0", "ZeroDivisionError")])
+def test_a_program_that_failed_before_its_first_event_fails_again(
+    source: str, failure: str, path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = path.with_name("model.py")
+    file.write_text(source, encoding="utf-8")
+    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
+    assert main(["replay", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("agrees up to the end of the recording: 0 events; the run failed after 0 s (")
+    assert failure in out

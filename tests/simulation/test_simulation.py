@@ -9,8 +9,10 @@ import time
 import tracemalloc
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from datetime import date
 from functools import partial
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -21,9 +23,10 @@ from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SchedulerError, SimulationError, WorldError
+from actr3d.recording import Recorded
 from actr3d.simulation import Glimpse, Simulation, agents, timeline
 from actr3d.simulation.agents import Environment
-from actr3d.trace import Trace
+from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Body, Floor, Mannequin, Scene, Wall, World
 from actr3d.world.body import SENSORS, sensor
 from tests.helpers.small_agents import near
@@ -255,6 +258,62 @@ def test_listeners_and_conditions_are_observers_too(look: str) -> None:
     assert digest(simulation) == digest(plain)
 
 
+RUNNERS: Any = load_text(
+    """
+from actr3d.actr import *
+
+class Runner(ACTR):
+    goal = Buffer()
+
+    def init():
+        goal.set("run")
+
+    def begin(goal="run"):
+        act[0](self)
+        goal.clear()
+""",
+    "runners.py",
+)
+
+
+def running(act: Callable[[Any], object]) -> Simulation:
+    """Returns a simulation whose agent does something with itself in a production."""
+
+    def agent() -> Any:
+        runner = RUNNERS.Runner()
+        runner.act = [act]
+        return runner
+
+    return Simulation(scene_of("walker"), {"walker": agent}, seed=1)
+
+
+@pytest.mark.parametrize("method", ["run(0.1)", "step()", "tick()", "tock()", "seek(0)", "undo()", "command('walk', 1.0, body='walker')"])
+def test_an_agent_cannot_run_or_change_the_simulation_that_runs_it(method: str) -> None:
+    simulation = running(lambda agent: eval(f"simulation.{method}", {"simulation": simulation}))
+    simulation.command("walk", 0.5, body="walker")
+    with pytest.raises(SimulationError, match="what an agent or a body does cannot run or change the simulation"):
+        simulation.run(0.1)
+
+
+@pytest.mark.parametrize("use", ["agents", "run(1)"])
+def test_what_makes_an_agent_cannot_use_the_agents(use: str) -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": lambda: eval(f"simulation.{use}", {"simulation": simulation})}, seed=1)
+    with pytest.raises(SimulationError, match="the agents are being made"):
+        simulation.run(0.1)
+
+
+def test_an_agent_of_a_simulation_cannot_run_by_itself_and_lose_lockstep() -> None:
+    def run_alone(agent: Any) -> None:
+        agent.run(1)
+
+    simulation = running(run_alone)
+    with pytest.raises(SchedulerError, match="'walker' is part of a simulation, which runs its agents in lockstep"):
+        run_alone(simulation.agents["walker"])
+    assert simulation.agents["walker"].now() == simulation.time == 0
+    with pytest.raises(SchedulerError, match="yield a number of seconds"):
+        simulation.run(0.1)
+
+
 def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
     simulation = Simulation(scene_of("walker"))
     simulation.command("walk", 1.0)
@@ -400,6 +459,10 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.step(1.5), r"step\(n\): must be a whole number >= 0 \(got 1\.5\)"),
     (lambda s: s.run(1, real_time="2"), r"run\(real_time\): must be a finite number > 0 \(got '2'\)"),
     (lambda s: s.run(1, real_time=float("inf")), r"run\(real_time\): must be a finite number > 0 \(got inf\)"),
+    (lambda s: s.observe(5), r"observe\(observer\): must be a function that takes a Glimpse \(got 5\)"),
+    (lambda s: s.listen(None), r"listen\(listener\): must be a function that takes a TraceEvent \(got None\)"),
+    (lambda s: Simulation(s.world.scene).measure(odd(5)), r"measure\(measure\): must be an object with the methods .* \(got 5\)"),
+    (lambda s: Simulation(s.world.scene).measure(odd(Counter)), r"measure\(measure\): must be an object with .*Counter"),
     (lambda s: s.run(until=True), r"run\(until\): must be a function that takes a Glimpse \(got True\)"),
     (lambda s: Simulation(odd(None)), r"got None\); an agent without a body .* plain assignments at the top of the file"),
     (lambda s: Simulation(odd("room")), r"Simulation\.scene: must be a Scene or a World \(got 'room'\)"),
@@ -449,6 +512,19 @@ def test_errors_say_what_is_wrong(wrong: Callable[[Simulation], object], message
         wrong(driving())
 
 
+def test_a_port_that_joins_another_agent_asks_that_agents_body() -> None:
+    simulation = Simulation(scene_of("first", "second"), {name: with_port(AGENTS.Idle) for name in ("first", "second")})
+    simulation.run(0.01)
+    agents_here = simulation.timeline.lockstep.agents
+    first, second = (getattr(agents_here.environment, name) for name in ("first", "second"))
+    port = first.body
+    port.get("pose")
+    port.parent = None
+    second.borrowed = port
+    port.get("pose")
+    assert [request.body for request in agents_here.outbox] == ["first", "second"]
+
+
 class Returned:
     """A measure that returns a given result."""
 
@@ -471,6 +547,29 @@ def test_a_result_that_is_not_of_a_dataclass_is_an_error_that_names_the_measure(
     simulation.measure(Returned(returned))
     with pytest.raises(SimulationError, match=r"^Returned\.result: must return an object of a dataclass \(returned "):
         simulation.result()
+
+
+@dataclass
+class Judged:
+    """A result that JSON cannot represent."""
+
+    kinds: set[int]
+    since: date
+
+
+def test_a_result_that_json_cannot_represent_is_recorded_as_it_is_traced(tmp_path: Path) -> None:
+    simulation = Simulation(Scene(parts=(Floor(),)))
+    simulation.measure(Returned(Judged({2, 1}, date(2026, 1, 31))))
+    heard: list[TraceEvent] = []
+    simulation.traced()
+    simulation.listen(heard.append)
+    with simulation.record(tmp_path / "run"):
+        simulation.run(0.02)
+        simulation.conclude()
+    with Recorded(tmp_path / "run") as recorded:
+        results = [event for event in recorded.events() if event.kind == "result"]
+    assert [event.data for event in results] == [event.data for event in heard if event.kind == "result"]
+    assert results[0].data == {"kinds": [1, 2], "since": "datetime.date(2026, 1, 31)"}
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

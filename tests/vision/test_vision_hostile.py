@@ -221,6 +221,27 @@ def test_words_that_requests_could_not_reach_are_refused(text: str, says: str) -
         lives(text)
 
 
+@pytest.mark.parametrize("field", ["size", "key", "elevation", "slots", "shown", "called", "salience", "since", "at_most", "self"])
+def test_a_field_cannot_have_the_name_of_something_that_every_feature_has(field: str) -> None:
+    text = f"@dataclass(frozen=True, kw_only=True)\nclass Odd(Feature):\n    {field}: Metres\n@detector(Odd)\ndef odd(view): return ()\n"
+    with pytest.raises(VisionError, match=f"^detector 'odd': '{field}' is reserved in features; use another name"):
+        lives(text)
+
+
+def test_it_may_stand_below_the_agent() -> None:
+    text = "@detector(Thing)\ndef things(view): return (Thing(distance=2.0, direction=0.0, width=0.5),)\n"
+    found = lives(f"{LOOK}vision.request('feature:thing', width='>0.3')\n{text}")
+    assert found.visual.chunk["width"] == 0.5
+
+
+def test_a_detector_of_a_known_name_that_is_registered_later_does_not_replace_it() -> None:
+    text = "@detector(Thing)\ndef things(view): return (Thing(distance=DISTANCE, direction=0.0),)\n"
+    first = agent(HEAD + text.replace("DISTANCE", "1.0") + LOOK + "vision.request('feature:thing')")
+    agent(HEAD + text.replace("DISTANCE", "2.0") + LOOK + "vision.request('feature:thing')")
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
+    assert AgentWithoutPhysics(world, first).tick(12).agent.visual.chunk["distance"] == 1.0
+
+
 POLE = """
 @dataclass(frozen=True, kw_only=True)
 class Pole(Feature):

@@ -103,14 +103,18 @@ def test_whatever_is_among_the_recordings_all_are_listed(desk: Desk, hostile: Pa
     assert problems["long"] == "the description of its run is too long to be listed"
 
 
-def test_nothing_can_be_had_of_them_but_the_file_and_a_clear_error(desk: Desk, hostile: Path) -> None:
-    for name in HOSTILE:
-        for part in ("file?form=events.csv", "file?form=states.csv", "file?form=replay.html", "curves", "code"):
-            place, _, query = part.partition("?")
-            answer = desk.ask(hostile, f"/api/recordings/{name}/{place}", query=query)
-            told: dict[str, Any] = json.loads(answer.body) if answer.status != 200 else {}
-            assert answer.status == 409 or name in ("long", "events"), (name, part, answer.body)
-            assert "/" not in told.get("error", ""), told
+PARTS = ("file?form=events.csv", "file?form=states.csv", "file?form=replay.html", "curves", "code")
+
+
+@pytest.mark.daily(1)
+@pytest.mark.parametrize("turn", range(len(PARTS)))  # each of them asks for one part of each recording, and for all parts
+def test_nothing_can_be_had_of_them_but_the_file_and_a_clear_error(desk: Desk, hostile: Path, turn: int) -> None:
+    for number, name in enumerate(HOSTILE):
+        place, _, query = PARTS[(number + turn) % len(PARTS)].partition("?")
+        answer = desk.ask(hostile, f"/api/recordings/{name}/{place}", query=query)
+        told: dict[str, Any] = json.loads(answer.body) if answer.status != 200 else {}
+        assert answer.status == 409 or name in ("long", "events"), (name, place, query, answer.body)
+        assert "/" not in told.get("error", ""), told
         assert desk.ask(hostile, f"/api/recordings/{name}/file").body == desk.sessions(hostile).recordings.path(name).read_bytes()
     assert desk.ask(hostile, "/api/recordings/linked").status == 404
 

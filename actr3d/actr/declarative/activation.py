@@ -6,6 +6,7 @@ Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's act
 from __future__ import annotations
 
 import math
+from numbers import Real
 from random import Random
 from typing import Any, Final, Protocol, cast
 
@@ -14,7 +15,7 @@ from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.noise import logistic_noise
-from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, checked_number, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ChunkError, ParameterError
 
@@ -187,6 +188,7 @@ class DMBaseLevel(MemorySubModule):
         self._limit = value
 
     def create(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
+        _check_reference(time, baselevel)
         # `creation` and `first` are both kept, because the profile is not known yet for a chunk that is added in a class's body.
         chunk.creation = self.now()
         chunk.first = self.now() - time
@@ -196,6 +198,7 @@ class DMBaseLevel(MemorySubModule):
             chunk.baselevel = baselevel
 
     def merge(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
+        _check_reference(time, baselevel)
         at = self.now() - time
         chunk.first = min(chunk.first, at)
         chunk.times.append(at)
@@ -239,6 +242,29 @@ class DMBaseLevel(MemorySubModule):
         return math.log(total) if total > 0 else -math.inf
 
 
+def _check_reference(time: Any, baselevel: Any) -> None:
+    """Checks what `memory.add` is given for the base level.
+
+    Raises:
+        ParameterError: If the time is not a finite number, or the base level not a number.
+    """
+    if time != 0:
+        checked_number(time, "memory.add: time")
+    if baselevel is not None and baselevel != "calculate":
+        _amount(baselevel, "baselevel")
+
+
+def _amount(value: Any, name: str) -> Any:
+    """Returns what `memory.add` is given for a part of the activation; nan is a number here, about which a request warns.
+
+    Raises:
+        ParameterError: If it is not a number.
+    """
+    if not isinstance(value, Real):
+        raise ParameterError(f"memory.add: {name}: must be a number (got {value!r})")
+    return value
+
+
 def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
     """Returns the sum over references whose times are not kept, as if they were spread evenly.
 
@@ -276,10 +302,10 @@ class DMFixed(MemorySubModule):
         self.default = default
 
     def create(self, chunk: Any, fixed: float | None = None, **keys: Any) -> None:
-        chunk.fixed = self.default if fixed is None else fixed
+        chunk.fixed = self.default if fixed is None else _amount(fixed, "fixed")
 
     def merge(self, chunk: Any, fixed: float = 0, **keys: Any) -> None:
-        chunk.fixed += fixed
+        chunk.fixed += _amount(fixed, "fixed")
 
     def activation(self, chunk: Any) -> float:
         return getattr(chunk, "fixed", self.default)

@@ -128,6 +128,7 @@ class Memory(WithParameters, Model):
 
         Raises:
             ChunkError: If no chunk can be made from the contents, or a variable is not bound.
+            ParameterError: If what a module is given is not a number.
         """
         if self.error:
             self.error = False

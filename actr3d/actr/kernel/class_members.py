@@ -84,15 +84,20 @@ def copy_objects(objects: dict[str, Any], living: Callable[[object], bool]) -> d
 
 
 def check_methods(kind: type) -> None:
-    """Checks that a class has no values under the names of methods that every model needs.
+    """Checks that a class has no values, and no productions, under the names of methods that every model needs.
 
     Raises:
         SchedulerError: If it has one.
     """
     for name in sorted(RESERVED & vars(kind).keys()):
         member: object = vars(kind)[name]
-        if not callable(member) and not hasattr(type(member), "__get__"):
+        if _is_production(member) or (not callable(member) and not hasattr(type(member), "__get__")):
             raise _reserved(kind, name)
+
+
+def _is_production(member: object) -> bool:
+    """Returns whether a class's attribute is a function that needs no arguments, and so no method: a production, or one like `init`."""
+    return inspect.isfunction(member) and all(p.default is not p.empty for p in inspect.signature(member).parameters.values())
 
 
 def _reserved(kind: type, name: str) -> SchedulerError:

@@ -123,6 +123,8 @@ class Model(TreeNode):
             own[name] = obj
         if self._convert_methods:
             for name, func in methods.items():
+                if name in own:
+                    self._warn_of_replacement(name, own[name])
                 wrapper = GeneratorWrapper if inspect.isgeneratorfunction(func) else MethodWrapper
                 own[name] = wrapper(self, func, name)
         if self._auto_run_start:
@@ -143,6 +145,13 @@ class Model(TreeNode):
                 f"{type(self).__name__}.{name} was set to {traceable(before)!r}, but becomes {traceable(after)!r}, as its class says, "
                 "when the model starts; set it after the first run(0), or leave it out of the class"
             )
+
+    def _warn_of_replacement(self, name: str, before: Any) -> None:
+        """Warns that a value set on the model is lost because its class has a method of that name."""
+        warn_modeller(
+            f"{type(self).__name__}.{name} was set to {traceable(before)!r}, but becomes the method '{name}' of its class when the model "
+            "starts; use another name"
+        )
 
     def _become_top(self) -> None:
         own = self.__dict__
@@ -311,11 +320,11 @@ class Model(TreeNode):
 
         Args:
             kind: The kind of event. It need not be registered; `actr3d.trace_kinds.trace_kind` adds its meaning, and its text on pages.
-            data: Its data; plain values, lists and dicts.
+            data: Its data; what is neither a plain value nor a list or dict of these is recorded by its name.
         """
         trace = self.sch.trace
         if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, kind, data)
+            trace.emit(self.sch.now_us, self._path, kind, {key: traceable(value) for key, value in data.items()})
 
     def _trace_state(self, trace: Trace) -> None:
         """Records the current value of every attribute, so that a trace that starts late is complete from its start."""
@@ -379,7 +388,8 @@ class Model(TreeNode):
                 queued for that time come first.
 
         Raises:
-            SchedulerError: If there is an endless loop in which no time passes, or something cannot be waited for.
+            SchedulerError: If there is an endless loop in which no time passes, or something cannot be waited for; if it is part of a
+                simulation, which alone runs its agents.
             Exception: What a listener of the trace has raised.
         """
         if not self._converted:
@@ -387,6 +397,11 @@ class Model(TreeNode):
             for prepare in BEFORE_FIRST_RUN:
                 prepare(self)
         sch = self.sch
+        if sch.in_lockstep:
+            raise SchedulerError(
+                f"'{self.name}' is part of a simulation, which runs its agents in lockstep with their bodies: call run of the Simulation; "
+                "to let time pass in an agent, yield a number of seconds"
+            )
         if func is not None:
             sch.add(func)
         if sch.trace is None:

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Concatenate, ParamSpec, TypeVar, ca
 
 from annotated_types import Ge, Gt
 
-from actr3d.configuration import Infinite, checked
+from actr3d.configuration import Infinite, checked, is_finite
 from actr3d.errors import ConfigurationError, ParameterError, alternatives, did_you_mean
 from actr3d.warnings import warn_modeller
 
@@ -158,6 +158,22 @@ def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
     """
     kind = cast("type[Any]", type(part))
     _check(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
+
+
+def checked_number(value: Any, where: str, *, infinite: bool = False) -> Any:
+    """Returns a number that a model gives; True and False count as 1 and 0.
+
+    Args:
+        value: The number.
+        where: What it is, for the error.
+        infinite: Whether it may be infinite.
+
+    Raises:
+        ParameterError: If it is not a number, is nan, or is infinite and may not be.
+    """
+    if not isinstance(value, Real) or value != value or not (infinite or is_finite(value)):
+        raise ParameterError(f"{where}: must be a {'' if infinite else 'finite '}number (got {value!r})")
+    return value
 
 
 def check_attribute(kind: type, name: str, value: Any) -> None:

@@ -123,6 +123,7 @@ def forget_place(part: TreeNode, *, keep_path: bool = False) -> None:
     """Discards what was computed from a part's place in the tree, for it and everything below it."""
     for below in subtree(part):
         below.__dict__.pop("_known_line_changes", None)
+        below.__dict__.pop("_known_embodiment", None)
         if not keep_path:
             below.__dict__.pop("_path", None)
 

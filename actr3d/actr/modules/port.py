@@ -153,10 +153,11 @@ class Port(Model):
 
     def _find_embodiment(self) -> Embodiment | None:
         """Returns the connection of the agent to a body; None for an agent without one."""
-        for part in lineage(self):
-            if "_embodiment" in part.__dict__:
-                return part.__dict__["_embodiment"]
-        return None
+        known = self.__dict__.get("_known_embodiment")  # it lasts as long as the port's place in the tree
+        if known is None:
+            found = (part.__dict__["_embodiment"] for part in lineage(self) if "_embodiment" in part.__dict__)
+            known = self.__dict__["_known_embodiment"] = next(found, None)
+        return known
 
     def _take(self, request: Request, answer: Any) -> None:
         """Receives an answer as an event of the agent, and wakes the generators that wait for it."""

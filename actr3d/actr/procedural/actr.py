@@ -9,7 +9,7 @@ from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.events import AGAIN, Event
 from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import Extended, NotNegative
+from actr3d.actr.kernel.parameters import Extended, NotNegative, checked_number
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, trace_utility_parts
@@ -105,7 +105,9 @@ class ACTR(ProductionSystem):
         best = max(utilities)
         threshold = self.production_threshold
         if callable(threshold):
-            threshold = threshold()
+            computed: Any = threshold()
+            where = f"{type(self).__name__}.production_threshold()"
+            threshold = None if computed is None else checked_number(computed, where, infinite=True)
         weighed = self.__dict__["_weighed"] = Weighed(matching, utilities, parts, threshold)
         if trace is not None and trace.all:
             self._trace_utilities(weighed, trace)
@@ -173,7 +175,7 @@ class ACTR(ProductionSystem):
     def _duration(self) -> float:
         time = self.production_time
         if callable(time):
-            time = time()
+            time = checked_number(time(), f"{type(self).__name__}.production_time()")
         if self.production_time_sd is not None:
             time += self.random.gauss(0, self.production_time_sd)
         return max(0, time - self.production_match_delay)
@@ -200,7 +202,11 @@ class ACTR(ProductionSystem):
         """Applies a reward.
 
         `PMNew` and `PMPGC` apply it to all productions chosen since the last reward, `PMTD` to the one that fired last.
+
+        Raises:
+            ParameterError: If it is not a finite number.
         """
+        checked_number(value, f"{type(self).__name__}.reward(value)")
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "reward", {"value": value})

@@ -88,6 +88,8 @@ class Production:
         if node is None:
             if self.original_func.__name__ == "<lambda>":
                 reason = f"it is a lambda ({self.place}); write it with def"
+            elif self.original_func.__code__.co_flags & (inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR):
+                reason = f"it is async ({self.place}); write it with def"
             elif has_file(self.original_func):
                 reason = f"its source is not available ({self.place}): the file has changed since it was loaded; load it again"
             else:

@@ -66,7 +66,7 @@ RESERVED = ("feature", "pattern", "bottom_up")
 """Words of a request that no slot or parameter can have."""
 
 DETECTORS = Registry[Detector]("detector")
-"""By name. A vision module uses those that are registered when it is made."""
+"""By name. What a vision module finds under a name stays the same if the text of another model defines that name later."""
 
 
 def detector(finds: type[Feature]) -> Callable[[D], D]:
@@ -76,8 +76,9 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         finds: The kind of features.
 
     Raises:
-        VisionError: If it is not a kind of features or has a field that requests cannot name, if there is another detector of that name,
-            or if the function does not take a view and parameters by keyword with defaults.
+        VisionError: If it is not a kind of features, has a field that requests cannot name or that has the name of a member of
+            `Feature`, if there is another detector of that name, or if the function does not take a view and parameters by keyword with
+            defaults.
     """
     if not (isinstance(finds, type) and issubclass(finds, Feature)):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
         raise VisionError(f"detector: must be given the class that it finds, a subclass of Feature (got {finds!r})")
@@ -86,6 +87,10 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
     unknown = [field for field, kind in types_of(finds).items() if field not in slots and get_origin(kind) is not ClassVar]
     if unknown:
         raise VisionError(f"detector '{name}': '{unknown[0]}' is not a field; write @dataclass(frozen=True, kw_only=True) above the class")
+
+    hiding = [slot for slot in slots if slot not in slot_names(Feature) and (hasattr(Feature, slot) or slot == "self")]
+    if hiding:
+        raise VisionError(f"detector '{name}': '{hiding[0]}' is reserved in features; use another name for that field")
 
     def add(detect: D) -> D:
         _, *others = inspect.signature(detect).parameters.values() or (None,)

@@ -252,3 +252,28 @@ def test_discarded_times_cannot_be_used_again() -> None:
     agent.memory.add("x")
     with pytest.raises(ParameterError, match=r"DMBaseLevel\.limit: must be a number, because times of references have not been kept"):
         agent.base.limit = None
+
+
+@pytest.mark.parametrize("again", [False, True])
+@pytest.mark.parametrize(
+    ("module", "given"),
+    [
+        (DMBaseLevel, {"baselevel": "2"}),
+        (DMBaseLevel, {"baselevel": [1]}),
+        (DMBaseLevel, {"time": "2"}),
+        (DMBaseLevel, {"time": math.inf}),
+        (DMFixed, {"fixed": [1]}),
+        (DMFixed, {"fixed": "2"}),
+    ],
+)
+def test_an_added_chunk_takes_numbers_only(module: Any, given: dict[str, Any], again: bool) -> None:
+    memory = Memory(Buffer())
+    agent = started_agent(memory=memory, part=module(memory))
+    if again:
+        agent.memory.add("a")
+    ((name, value),) = given.items()
+    with pytest.raises(ParameterError) as caught:
+        agent.memory.add("a", **given)
+    assert str(caught.value).startswith(f"memory.add: {name}: must be a ")
+    assert str(caught.value).endswith(f"number (got {value!r})")
+    assert len(agent.memory.dm) == int(again)

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr import Model
+from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning, SchedulerError
 from tests.helpers.model_trees import Ball
 
@@ -109,6 +110,42 @@ def test_static_class_and_property_members_stay_what_they_are() -> None:
 def test_methods_that_a_model_needs_are_not_replaced_by_values(name: str, value: Any) -> None:
     with pytest.raises(SchedulerError, match=rf"Odd\.{name}: the name '{name}' is reserved in every model; use another"):
         type("Odd", (Model,), {name: value})
+
+
+@pytest.mark.parametrize("name", ["run", "now", "get_children", "traced", "explain"])
+@pytest.mark.parametrize("parameters", ["", "goal='explain'"])
+def test_a_production_cannot_have_the_name_of_a_method_that_every_model_needs(name: str, parameters: str) -> None:
+    text = f"from actr3d.actr import *\nclass Agent(ACTR):\n    goal = Buffer()\n    def {name}({parameters}):\n        goal.clear()\n"
+    with pytest.raises(SchedulerError, match=rf"Agent\.{name}: the name '{name}' is reserved in every model; use another"):
+        load_text(text, "agent.py")
+
+
+def test_a_class_may_override_the_methods_that_every_model_needs() -> None:
+    class Clock(Model):
+        def now(self) -> float:
+            return 7.0
+
+        def run(self, limit: float | None = None, func: Any = None) -> None:
+            self.limits = limit, func
+
+        def explain(*given: Any) -> str:
+            return "so"
+
+    clock: Any = Clock()
+    clock.run(3)
+    assert (clock.now(), clock.limits, clock.explain()) == (7.0, (3, None), "so")
+
+
+def test_a_value_that_a_method_of_its_name_replaces_is_reported() -> None:
+    class Heavy(Model):
+        def weight(self) -> int:
+            return 3
+
+    heavy: Any = Heavy()
+    setattr(heavy, "weight", 5)  # noqa: B010 - of a method's name
+    with pytest.warns(ModelWarning, match=r"Heavy\.weight was set to 5, but becomes the method 'weight' of its class"):
+        heavy.run(0)
+    assert heavy.weight() == 3
 
 
 @pytest.mark.parametrize("name", ["name", "log", "random", "changes", "sch", "parent"])

@@ -228,6 +228,13 @@ def test_missing_source_code_is_reported_plainly() -> None:
         space["Agent"]().run(1)
 
 
+@pytest.mark.parametrize("statement", ["goal.clear()", "yield 1"])
+def test_an_async_production_is_reported_plainly(statement: str) -> None:
+    body = f"class Agent(ACTR):\n    goal = Buffer()\n    async def init():\n        {statement}\n"
+    with pytest.raises(ProductionException, match=r"production 'init': it is async \(forms.py:5\); write it with def"):
+        ran(body)
+
+
 def test_a_file_that_changed_after_it_was_loaded_is_reported_plainly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "changed_since.py"
     text = HEAD + "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"

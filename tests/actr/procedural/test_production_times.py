@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 
+from actr3d.errors import ParameterError
 from tests.helpers.production_cycle import fired, run
 
 
@@ -89,3 +90,21 @@ class Agent(ACTR):
     gaps = [b - a for a, b in pairwise(out)]
     assert min(gaps) >= 0
     assert len(set(gaps)) > 50
+
+
+@pytest.mark.parametrize("name", ["production_time", "production_threshold"])
+@pytest.mark.parametrize("value", ["float('nan')", "'0.1'"])
+def test_a_function_that_computes_no_number_is_an_error_that_names_it(name: str, value: str) -> None:
+    body = f"""
+class Agent(ACTR):
+    goal = Buffer()
+    {name} = lambda: {value}
+    def init():
+        goal.set('a')
+    def p(goal='a'):
+        goal.clear()
+    def q(goal='a'):
+        goal.clear()
+"""
+    with pytest.raises(ParameterError, match=rf"Agent\.{name}\(\): must be a (finite )?number \(got "):
+        run(body)

@@ -11,7 +11,7 @@ import pytest
 import actr3d.actr as library
 from actr3d.actr import PMPGC, PMTD, PMNew, PMNoise, PMPGCMixedWeighted, PMPGCSuccessWeighted, ProceduralSubModule
 from actr3d.actr.loading import load_text
-from actr3d.errors import ProductionException
+from actr3d.errors import ParameterError, ProductionException
 from tests.helpers.python_actr_reference import model_file
 from tests.helpers.small_agents import near
 
@@ -176,3 +176,14 @@ def test_a_history_of_an_unknown_production_is_refused_with_the_names() -> None:
     agent = steps(learn=PMPGC())
     with pytest.raises(KeyError, match=r"PMPGC\.set: no production 'onee'; did you mean 'one'"):
         agent.learn.set("onee", successes=1)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, "2", None, [1]])
+def test_a_reward_is_a_finite_number(value: Any) -> None:
+    agent = steps(learning=PMNew(alpha=0.2))
+    before = in_order(agent)
+    with pytest.raises(ParameterError, match=r"reward\(value\): must be a finite number \(got "):
+        agent.reward(value)
+    assert in_order(agent) == before
+    agent.reward(True)
+    assert in_order(agent) != before
