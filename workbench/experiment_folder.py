@@ -7,7 +7,7 @@ import hashlib
 import json
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import msgspec
 
@@ -28,6 +28,9 @@ LARGEST = 20_000_000
 """Maximum size of a description [bytes]."""
 LARGEST_REPORT = 200_000_000
 """Maximum size of a file of a report that is shown [bytes]."""
+
+
+S = TypeVar("S", bound=msgspec.Struct)
 
 
 class Notes(msgspec.Struct, frozen=True, kw_only=True):
@@ -75,10 +78,7 @@ class ExperimentFolder:
     @property
     def facts(self) -> ExperimentFacts | None:
         """The facts of the experiment; None if they cannot be read."""
-        try:
-            return msgspec.json.decode(self._read(FACTS), type=ExperimentFacts)
-        except (OSError, msgspec.MsgspecError, ValueError, RecursionError):
-            return None
+        return self._decoded(FACTS, ExperimentFacts)
 
     @property
     def table(self) -> Path | None:
@@ -145,10 +145,7 @@ class ExperimentFolder:
     @property
     def notes(self) -> Notes:
         """The notes; empty ones if there are none, or they cannot be read."""
-        try:
-            return msgspec.json.decode(self._read(NOTES), type=Notes)
-        except (OSError, msgspec.MsgspecError, ValueError, RecursionError):
-            return Notes()
+        return self._decoded(NOTES, Notes) or Notes()
 
     def note(self, **changes: Any) -> None:
         """Changes notes; does nothing if the folder is gone or cannot be written, because they are not needed to run an experiment."""
@@ -174,6 +171,13 @@ class ExperimentFolder:
     def _checksum(self) -> bytes:
         """Returns the checksum of the description, which differs from that of any recording."""
         return hashlib.sha256(b"experiment\0" + self._read(SPECIFICATION)).digest()
+
+    def _decoded(self, name: str, kind: type[S]) -> S | None:
+        """Returns what a file holds; None if it cannot be read."""
+        try:
+            return msgspec.json.decode(self._read(name), type=kind)
+        except (OSError, msgspec.MsgspecError, ValueError, RecursionError):
+            return None
 
     def _read(self, name: str) -> bytes:
         path = self.path / name

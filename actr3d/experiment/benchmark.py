@@ -94,11 +94,7 @@ def _aperture(folder: Path) -> list[Measurement]:
 
 
 class _Trials:
-    """Some trials of the paper's design.
-
-    Args:
-        variant: The variant of the walker.
-    """
+    """Some trials of the paper's design, with a variant of the walker."""
 
     def __init__(self, variant: str) -> None:
         specification = specify(DESIGN, values={"variant": variant}).specification

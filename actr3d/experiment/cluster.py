@@ -148,11 +148,8 @@ def run_experiment(
         ExperimentError: If the versions of a worker are not those of the specification, the experiment cannot be loaded there,
             the cluster is lost, or the rows cannot be written.
     """
-    total = len(experiment.design)
     with store.only_writer():
-        left = store.missing(total)
-        run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures, checked)
-        run.all(left)
+        _Run(experiment, store, client, show, stop or threading.Event(), checked).all()
 
 
 class _Run:
@@ -165,22 +162,22 @@ class _Run:
         client: Any,
         show: Callable[[ExperimentProgress], object],
         stop: threading.Event,
-        done: int,
-        failures: int,
         checked: bool,
     ) -> None:
         self._experiment, self._store, self._client, self._show, self._stop = experiment, store, client, show, stop
+        self._total, self._done, self._failures = len(experiment.design), store.count, store.failures
         self._json = experiment.specification.to_json()
         self._versions = ", ".join(f"{name} {text}" for name, text in experiment_versions().items())
-        self._done, self._failures, self._seconds, self._checked = done, failures, BATCH, checked
+        self._seconds, self._checked = BATCH, checked
         self._waiting: dict[Any, list[int]] = {}
         self._suspects: deque[int] = deque()
         self._killed: dict[int, int] = {}
         self._shown: ExperimentProgress | None = None
         self._finished: SimpleQueue[Any] = SimpleQueue()
 
-    def all(self, numbers: Iterator[int]) -> None:
-        """Runs trials until there are none, or the run is stopped."""
+    def all(self) -> None:
+        """Runs the trials that have no row yet, until there are none or the run is stopped."""
+        numbers = self._store.missing(self._total)
         self._report()
         while not self._stop.is_set():
             for batch in self._next_batches(numbers):
@@ -210,7 +207,7 @@ class _Run:
         most = max(1, self._report().workers) * AHEAD
         usual = min(MAX_BATCH, round(BATCH / max(self._seconds, 1e-6)))
         for _ in range(most - len(self._waiting)):
-            left = len(self._experiment.design) - self._done - sum(map(len, self._waiting.values()))
+            left = self._total - self._done - sum(map(len, self._waiting.values()))
             batch = list(islice(numbers, max(1, min(usual, left // most))))
             if not batch:
                 break
@@ -219,9 +216,8 @@ class _Run:
             yield [self._suspects.popleft()]
 
     def _submit(self, batch: list[int]) -> None:
-        limit = self._experiment.design.limit
         try:
-            given = self._json, batch, limit, cluster_versions(), self._client.id
+            given = self._json, batch, self._experiment.design.limit, cluster_versions(), self._client.id
             future = self._client.submit(run_batch, *given, pure=False, priority=-batch[0])
         except (RuntimeError, OSError):  # the client has just been closed
             self._lost()
@@ -276,16 +272,14 @@ class _Run:
 
     def _report(self) -> ExperimentProgress:
         """Returns the progress, and shows it if it is not shown yet."""
-        total = len(self._experiment.design)
-        progress = ExperimentProgress(done=self._done, total=total, failures=self._failures, workers=self._workers())
+        progress = ExperimentProgress(done=self._done, total=self._total, failures=self._failures, workers=self._workers())
         if progress != self._shown:
             self._shown = progress
             self._show(progress)
         return progress
 
     def _lost(self) -> NoReturn:
-        total = len(self._experiment.design)
-        raise ExperimentError(f"the scheduler is gone; {self._done} of {total} trials are kept; continue with --resume") from None
+        raise ExperimentError(f"the scheduler is gone; {self._done} of {self._total} trials are kept; continue with --resume") from None
 
 
 # -- on the workers
@@ -317,11 +311,8 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
         ExperimentError: If the worker has other versions, or the experiment cannot be loaded.
     """
     worker = _worker("name") or str(os.getpid())
-    different = [
-        f"{name} {cluster_versions().get(name, 'none')} (the client has {text})"
-        for name, text in expected.items()
-        if cluster_versions().get(name) != text
-    ]
+    own = cluster_versions()
+    different = [f"{name} {own.get(name, 'none')} (the client has {text})" for name, text in expected.items() if own.get(name) != text]
     if different:
         raise ExperimentError(f"worker {worker}: has other versions: {', '.join(different)}; install the same on both")
     with _LOCK:

@@ -45,11 +45,7 @@ SHOWN = 3
 
 
 class Output:
-    """The output of the command: text for people, or one JSON object a line for programs.
-
-    Args:
-        json: Whether it is JSON.
-    """
+    """The output of the command: text for people, or with `json` one JSON object a line for programs."""
 
     def __init__(self, *, json: bool) -> None:
         self.json = json
@@ -548,14 +544,8 @@ def _progress(out: Output, what: str, total: int) -> Generator[Callable[[Experim
     if out.json or not out.console.is_terminal:
         yield _lines(out, {"what": what} if what else {})
         return
-    columns = (
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[failed]}"),
-    )
-    with Progress(*columns, console=out.console) as bar:
+    rate, failed = (TextColumn(f"{{task.fields[{name}]}}") for name in ("rate", "failed"))
+    with Progress(BarColumn(), MofNCompleteColumn(), rate, TimeElapsedColumn(), failed, console=out.console) as bar:
         task = bar.add_task("", total=total, rate="", failed="")
         begin: list[tuple[float, int]] = []
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+import signal
+import threading
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from random import Random
@@ -36,6 +38,8 @@ HUGE = 1e100
 """The maximum size of a number: the squares of larger ones may be infinite."""
 FINEST = 1e-5
 """The least standard deviation of a distribution."""
+LONGEST_TIMER = 1e8
+"""A timer of the system cannot be much longer than this [s]."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
 RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
@@ -229,7 +233,7 @@ class Design(Configuration):
     """The maximum simulated time of a trial [s]."""
     limit: Annotated[float, Gt(0)] = 600.0
     """The maximum wall time of a trial [s]: a trial that takes longer is ended, and counts as failed. The first one on a computer
-    may have to compile the camera, which takes up to a minute."""
+    may have to compile the camera, which takes up to a minute. A `derive` that takes longer for the values of a trial is an error."""
     human: str | None = None
     """The name of human data of the library that the report shows beside the model's; see `actr3d.experiment.human_data`."""
     seed: int = 1
@@ -390,7 +394,7 @@ class Design(Configuration):
             DesignError: If there is no such trial.
         """
         trial = self.underived_trial(number)
-        with suppress(DesignError):
+        with suppress(DesignError), self._in_time():
             trial = replace(trial, values=self.derived(trial.values))
         return trial.columns
 
@@ -428,6 +432,27 @@ class Design(Configuration):
                 raise DesignError(f"Design.derive: must not return '{name}', which is {what}; give it another name", "derive")
             _check_plain(value, f"Design.derive['{name}']", "derive")
         return {**values, **found}
+
+    @contextmanager
+    def _in_time(self) -> Generator[None]:
+        """Ends `derive` inside the block at the limit of a trial. Elsewhere, who runs a trial ends it; no other thread can be ended.
+
+        Raises:
+            TimeoutError: If it has not returned then.
+        """
+
+        def end(*_: object) -> None:
+            raise TimeoutError(f"it did not return within {self.limit:g} s, the limit of a trial")
+
+        if self.derive is None or threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before, left = signal.signal(signal.SIGALRM, end), signal.setitimer(signal.ITIMER_REAL, min(self.limit, LONGEST_TIMER))
+        try:
+            yield
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, *left)
+            signal.signal(signal.SIGALRM, before)
 
     def table(self) -> Iterator[Trial]:
         """Yields all trials."""
@@ -511,7 +536,9 @@ class Design(Configuration):
             pairs = [*((one, {}) for one in people), *((people[0], one) for one in single)]
         for (participant, cell), example in itertools.product(pairs, examples):
             values = _ReadNames({**example, **participant.parameters, **cell}, read)
-            for name, value in self.derived(values).items():
+            with self._in_time():
+                derived = self.derived(values)
+            for name, value in derived.items():
                 if name in measured:
                     raise DesignError(f"Design.measures: '{name}' is already a column of the trials; rename it", name)
                 if name in known:

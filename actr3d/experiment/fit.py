@@ -111,6 +111,10 @@ class Range(Configuration):
             outside = (rounded - bound) * inwards < 0
             object.__setattr__(self, name, round(rounded + inwards * 10**-DIGITS, DIGITS) if outside else rounded)
 
+    def at(self, part: float) -> float:
+        """Returns the value at a part of the range, from 0 to 1."""
+        return round(self.low + part * (self.high - self.low), DIGITS)
+
     @classmethod
     def from_text(cls, text: str) -> Range:
         """Returns the range that `NAME=LOW..HIGH` describes.
@@ -396,7 +400,7 @@ class Fit:
             for one in self._ranges:  # a Latin hypercube: each tenth of each range once
                 order = list(range(STARTING))
                 rng.shuffle(order)
-                columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), DIGITS)
+                columns[one.name] = one.at((order[number] + 0.5) / STARTING)
             return columns
         for proposed in self._proposed_by_emulator(number - STARTING):
             if proposed not in self._points:
@@ -504,8 +508,7 @@ class Fit:
         return [(values[one.name] - one.low) / (one.high - one.low) for one in self._ranges]
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
-        parts = zip(self._ranges, point.tolist(), strict=True)
-        return {one.name: round(one.low + part * (one.high - one.low), DIGITS) for one, part in parts}
+        return {one.name: one.at(part) for one, part in zip(self._ranges, point.tolist(), strict=True)}
 
     # -- other designs, other models, other data
 
@@ -645,12 +648,7 @@ def measures_of(experiment: Experiment) -> list[str]:
 
 
 def check_measure(name: str, known: Collection[str], experiment: Experiment) -> None:
-    """Checks that the trials of a design have the measure that is fitted.
-
-    Args:
-        name: The measure.
-        known: The measures of a trial.
-        experiment: The experiment with the design.
+    """Checks that the measure that is fitted is one of the known ones of a trial of an experiment.
 
     Raises:
         SettingError: If it is none of them.
@@ -685,12 +683,7 @@ def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
 
 
 def _check_in_common(target: Mapping[Cell, float], of: Design, option: str) -> None:
-    """Checks that a design has some conditions of a target.
-
-    Args:
-        target: The target.
-        of: The design.
-        option: The option that gave the design, for errors.
+    """Checks that a design has some conditions of a target; `option` names in errors what gave the design.
 
     Raises:
         ExperimentError: If it has none.
@@ -703,11 +696,7 @@ def _check_in_common(target: Mapping[Cell, float], of: Design, option: str) -> N
 
 
 def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> dict[Cell, float]:
-    """Returns the means of a target by cell.
-
-    Args:
-        target: The means.
-        option: The option that gave them, for errors.
+    """Returns the means of a target by cell; `option` names in errors what gave them.
 
     Raises:
         ExperimentError: If there are none, they are of several measures, two are of the same conditions, or some of fewer conditions.
@@ -810,5 +799,5 @@ def _agreement_of(found: _Simulated, target: Mapping[Cell, float]) -> Agreement:
 
 def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:
     """Returns a fitted parameter; its bounds are given as shares of the range."""
-    bounds = [None if part is None else round(one.low + part * (one.high - one.low), DIGITS) for part in (low, high)]
-    return Fitted(name=one.name, value=value, low=bounds[0], high=bounds[1])
+    least, greatest = (None if part is None else one.at(part) for part in (low, high))
+    return Fitted(name=one.name, value=value, low=least, high=greatest)

@@ -168,9 +168,6 @@ def _bytes(path: Path | str) -> bytes:
 class HumanFile:
     """A file of human data, and its errors.
 
-    Args:
-        path: The file.
-
     Raises:
         ExperimentError: If it cannot be read, or is not CSV.
     """

@@ -15,7 +15,7 @@ import pkgutil
 import re
 import sys
 from collections.abc import Collection, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from copy import copy
 from dataclasses import asdict, dataclass, field, fields
 from importlib import import_module
@@ -126,15 +126,12 @@ class Specification(Configuration):
             found += [f"the module '{name}' beside the {one} differs" for name in names]
         return found
 
-    @contextmanager
-    def sealed(self) -> Generator[HelperTexts]:
+    def sealed(self) -> AbstractContextManager[HelperTexts]:
         """Restricts imports inside the block to the texts of the specification, the standard library and installed packages.
 
-        Yields:
-            The helper modules of design and model, for `Experiment` and `run_trial`.
+        The block is given the helper modules of design and model, for `Experiment` and `run_trial`.
         """
-        with sealed(self.model.file, self.model.text, {**self.design.helpers, **self.model.helpers}) as helpers:
-            yield helpers
+        return sealed(self.model.file, self.model.text, {**self.design.helpers, **self.model.helpers})
 
     @classmethod
     def from_json(cls, text: str, where: str) -> Specification:
@@ -333,11 +330,8 @@ def specify(
 
 def _other_fields(one: Design, other: Design) -> list[str]:
     """Returns the names of the fields that differ between two designs, of those that `Design.changed` cannot change."""
-    fields_of = [
-        {"model": of.model, "measures": [asdict(measure) for measure in of.kept], "order": of.order, "human": of.human}
-        for of in (one, other)
-    ]
-    return [name for name, value in fields_of[0].items() if value != fields_of[1][name]]
+    mine, theirs = ({"model": of.model, "measures": of.kept, "order": of.order, "human": of.human} for of in (one, other))
+    return [name for name, value in mine.items() if value != theirs[name]]
 
 
 def _as_json(value: Any) -> Any:

@@ -95,9 +95,6 @@ _LAST_NAMES = tuple(column.name for column in LAST)
 class Store:
     """The folder of an experiment. Its table of trials is opened to read and write, or only to read if it cannot be written.
 
-    Args:
-        folder: The folder.
-
     Raises:
         ExperimentError: If the folder holds no experiment.
     """
@@ -106,6 +103,9 @@ class Store:
         self.folder = Path(folder)
         path = self.folder / SPECIFICATION
         try:
+            for file in (path, self.folder / TRIALS, self.folder / LOCK):
+                if file.is_fifo():  # opening it would wait for a program that writes to it
+                    raise ExperimentError(f"'{self.folder}' holds no experiment: {file.name} is a pipe, not a file")
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ExperimentError(f"'{self.folder}' holds no experiment: cannot read {SPECIFICATION} ({reason_of(error)})") from None
@@ -261,11 +261,7 @@ class Store:
         return self._database.execute(f"SELECT count({failed}) FROM trial").fetchone()[0]
 
     def missing(self, total: int) -> Iterator[int]:
-        """Yields the numbers of trials without a row, in order.
-
-        Args:
-            total: The number of trials of the design.
-        """
+        """Yields the numbers of those trials of a design with `total` trials that have no row, in order."""
         done = bytearray(total)
         for (number,) in self._database.execute("SELECT number FROM trial"):
             if isinstance(number, int) and 0 <= number < total:
@@ -279,11 +275,7 @@ class Store:
         return (*(Column(name=n, type=t, unit=u, meaning=m or MEANINGS.get(n, "")) for n, t, u, m in found), *LAST)
 
     def rows(self, after: int = -1) -> Iterator[Row]:
-        """Yields all rows by the numbers of their trials, also those that are added meanwhile.
-
-        Args:
-            after: Only trials with a greater number than this.
-        """
+        """Yields the rows of all trials after a number, in order, also those that are added meanwhile."""
         names = self._names
         while found := self._read("number > ? ORDER BY number LIMIT ?", (after, ROWS_AT_ONCE)):
             yield from (self._row(one, names) for one in found)

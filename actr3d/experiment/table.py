@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from importlib import import_module
 from itertools import islice
 from pathlib import Path
@@ -28,21 +28,17 @@ def export(store: Store) -> list[Path]:
     Raises:
         ExperimentError: If a file cannot be written.
     """
-    columns = store.columns
+    columns, folder = store.columns, store.folder
     try:
-        return [
-            _replaced(store.folder / COLUMNS, lambda path: _write_columns(path, columns)),
-            _replaced(store.folder / CSV, lambda path: _write_csv(path, columns, store.rows())),
-            _replaced(store.folder / PARQUET, lambda path: _write_parquet(path, columns, store.rows())),
-        ]
+        with replacing(folder / COLUMNS) as part:
+            _write_columns(part, columns)
+        with replacing(folder / CSV) as part:
+            _write_csv(part, columns, store.rows())
+        with replacing(folder / PARQUET) as part:
+            _write_parquet(part, columns, store.rows())
     except OSError as error:
-        raise ExperimentError(f"'{store.folder}': cannot write the table of trials ({reason_of(error)})") from None
-
-
-def _replaced(path: Path, write: Callable[[Path], None]) -> Path:
-    with replacing(path) as part:
-        write(part)
-    return path
+        raise ExperimentError(f"'{folder}': cannot write the table of trials ({reason_of(error)})") from None
+    return [folder / name for name in (COLUMNS, CSV, PARQUET)]
 
 
 def _write_columns(path: Path, columns: tuple[Column, ...]) -> None:

@@ -40,12 +40,8 @@ class MissingMeasureError(DesignError):
 def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row:
     """Runs a trial and returns its measures, with `end` and `error`; a trial that fails has its traceback instead of measures.
 
-    The files are loaded again for each trial, so that no trial can change a variable that another one reads.
-
-    Args:
-        experiment: The experiment.
-        trial: The trial.
-        helpers: Provides the helper modules of the model; see `Specification.sealed`.
+    The files are loaded again for each trial, so that no trial can change a variable that another one reads. The helper modules are those
+    of `Specification.sealed`.
     """
     try:
         with printing_nothing(), unchecked():
@@ -64,13 +60,7 @@ def failed_row(error: BaseException) -> Row:
 
 
 def record_trial(experiment: Experiment, trial: Trial, file: Path | str, helpers: HelperTexts) -> Any:
-    """Runs a trial again and records it; what the model prints goes to the standard output.
-
-    Args:
-        experiment: The experiment.
-        trial: The trial.
-        file: The new file of the recording.
-        helpers: Provides the helper modules of the model; see `Specification.sealed`.
+    """Runs a trial again and records it in a new file; what the model prints goes to the standard output.
 
     Returns:
         The result of the simulation; None for a program.
@@ -93,11 +83,7 @@ def parameters_for(experiment: Experiment, trial: Trial) -> dict[str, Any]:
 
 
 def check_name(name: str, known: Collection[str]) -> None:
-    """Checks that a trial has a measure.
-
-    Args:
-        name: The name of the measure.
-        known: The names of all measures of the trial.
+    """Checks that a measure is one of the known ones of a trial.
 
     Raises:
         MissingMeasureError: If it is none of them.

@@ -20,6 +20,7 @@ import threading
 import time
 from contextlib import suppress
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any, BinaryIO
 
 from actr3d.actr.loading.helper_modules import HelperTexts
@@ -225,18 +226,20 @@ def main(folder: str) -> None:
     for number in (0, 1, 2):
         os.dup2(nothing, number)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the client ends this process
-    asked = _Questions(questions, folder)
+    asked: SimpleQueue[str | int] = SimpleQueue()
+    reader = threading.Thread(target=_read, args=(questions, asked, folder), daemon=True)
+    reader.start()
     with suppress(BrokenPipeError):
         _answer(asked, answers, folder)
-    asked.reader.join()  # it ends this process
+    reader.join()  # it ends this process
 
 
-def _answer(asked: _Questions, answers: BinaryIO, folder: str) -> None:
+def _answer(asked: SimpleQueue[str | int], answers: BinaryIO, folder: str) -> None:
     """Answers with what `run_trial` returns, or with the error of an experiment that cannot be loaded.
 
     The error of a trial is the same in every process: without addresses in memory, and with TMPDIR for the folder of temporary files.
     """
-    question: str | int = asked.next()
+    question = asked.get()
     while True:
         try:
             assert isinstance(question, str), "the first question is an experiment"
@@ -246,7 +249,7 @@ def _answer(asked: _Questions, answers: BinaryIO, folder: str) -> None:
                 answers.write(b"{}\n")
                 described = 0
                 own = os.getpid()
-                while isinstance(question := asked.next(), int):
+                while isinstance(question := asked.get(), int):
                     columns, row = _row_of(experiment, question, helpers)
                     if os.getpid() != own:  # the model has forked, and this is its child
                         os._exit(0)
@@ -264,7 +267,7 @@ def _answer(asked: _Questions, answers: BinaryIO, folder: str) -> None:
             raise
         except Exception as error:  # noqa: BLE001 - the client reports it, and ends this process
             answers.write(json.dumps({"failed": traceback_report(error).text.strip()}).encode() + b"\n")
-            question = asked.next()
+            question = asked.get()
 
 
 def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> tuple[Row, Row]:
@@ -280,31 +283,13 @@ def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> tuple[
         return columns, {**failed_row(error), "end": "error"}
 
 
-class _Questions:
-    """Reads experiments and numbers of trials in a thread, and ends this process at once when the client is gone."""
-
-    def __init__(self, file: BinaryIO, folder: str) -> None:
-        self._file = file
-        self._folder = folder
-        self._there = threading.Condition()
-        self._waiting: list[str | int] = []
-        self.reader = threading.Thread(target=self._read, daemon=True)
-        self.reader.start()
-
-    def next(self) -> str | int:
-        """Waits for the next question and returns it."""
-        with self._there:
-            self._there.wait_for(lambda: self._waiting)
-            return self._waiting.pop(0)
-
-    def _read(self) -> None:
-        for line in self._file:
-            with self._there:
-                self._waiting.append(json.loads(line))
-                self._there.notify()
-        for _ in range(ATTEMPTS):  # what runs here may be making a file
-            shutil.rmtree(self._folder, ignore_errors=True)
-        os.killpg(0, signal.SIGKILL)  # this process, and those that its models have started
+def _read(questions: BinaryIO, asked: SimpleQueue[str | int], folder: str) -> None:
+    """Reads experiments and numbers of trials, and ends this process at once when the client is gone."""
+    for line in questions:
+        asked.put(json.loads(line))
+    for _ in range(ATTEMPTS):  # what runs here may be making a file
+        shutil.rmtree(folder, ignore_errors=True)
+    os.killpg(0, signal.SIGKILL)  # this process, and those that its models have started
 
 
 if __name__ == "__main__":

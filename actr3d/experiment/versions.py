@@ -23,11 +23,7 @@ def experiment_versions() -> dict[str, str]:
 
 
 def folder_digest(folder: Path) -> str:
-    """Returns twelve characters that change if a file of a package does: code or data, not what Python compiles from it.
-
-    Args:
-        folder: The folder of the package.
-    """
+    """Returns twelve characters that change if a file in the folder of a package does: code or data, not what Python compiles from it."""
     found = sha256()
     for path in sorted(folder.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts:

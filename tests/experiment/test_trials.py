@@ -607,6 +607,18 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
         Store(tmp_path / "out")
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+@pytest.mark.parametrize("name", ["experiment.json", "trials.sqlite", "lock"])
+@pytest.mark.timeout(20)
+def test_a_pipe_in_the_folder_of_an_experiment_is_refused_and_not_waited_for(name: str, tmp_path: Path) -> None:
+    store = store_of(tmp_path)
+    store.close()
+    (store.folder / name).unlink(missing_ok=True)
+    os.mkfifo(store.folder / name)
+    with pytest.raises(ExperimentError, match=rf"holds no experiment: {name} is a pipe, not a file"):
+        Store(store.folder)
+
+
 def test_an_experiment_in_a_folder_that_cannot_be_written_is_read() -> None:
     with tempfile.TemporaryDirectory() as place:  # pytest's own folders are closed to others
         outer = Path(place)

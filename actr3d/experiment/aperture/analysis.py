@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, Constraint, Findings
-from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
+from actr3d.experiment.aperture.critical_ratio import CriticalRatio, bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import TURNED, Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
@@ -34,26 +34,11 @@ ANGLE = "shoulder angle at the wall [degrees]"
 OF_RATIO = "aperture / shoulder width (A/S)"
 ASKED_TO_TURN = f"asked of a model: {CRITICAL[0]:g} to {CRITICAL[1]:g} (people: 1.28 to 1.31)"
 ASKED_TO_PASS = f"asked of a model: {PASSABLE[0]:g} to {PASSABLE[1]:g} (people: about 1.16)"
-NEEDED = (
-    "participant",
-    "group",
-    "condition",
-    "aperture",
-    "shoulder_width",
-    "wall_angle_deg",
-    "peak_angle_deg",
-    "clearance_left_m",
-    "clearance_right_m",
-    "contacts",
-    "outcome",
-    "bar",
-    "start_aside",
-    "start_heading",
-)
-"""The columns that a `Passing` is made of."""
-BEYOND = "beyond: the value is most likely outside the ratios of the trials; it is then only a bound, and left out of all means."
 OF_WALKS = ("aperture", "shoulder_width", "wall_angle_deg", "clearance_left_m", "clearance_right_m", "contacts", "outcome")
 """The columns that every experiment with walks through apertures has."""
+NEEDED = ("participant", "group", *OF_WALKS, "condition", "peak_angle_deg", "bar", "start_aside", "start_heading")
+"""The columns that a `Passing` is made of."""
+BEYOND = "beyond: the value is most likely outside the ratios of the trials; it is then only a bound, and left out of all means."
 SIDES_DIFFER = 0.001
 """Sides that differ by less than this in every trial are equal [m]."""
 
@@ -142,10 +127,7 @@ def judging_apertures(results: Results, others: Sequence[ReferenceMeans]) -> lis
     for (group, participant), of in rows.groupby(["group", "participant"], sort=False, observed=True):
         answered = of[of["passable"].notna()]
         judged.append(list(zip(answered["ratio"].tolist(), (answered["passable"] < 0.5).tolist(), strict=True)))
-        one = critical_ratio(judged[-1])
-        values = (math.nan,) * 3 if one is None else (one.value, one.low, one.high)
-        found.append({"group": group, "participant": participant, **dict(zip(("boundary", "low", "high"), values, strict=True))})
-        found[-1]["beyond"] = "yes" if one is not None and one.beyond else "no"
+        found.append({"group": group, "participant": participant, **_columns("boundary", critical_ratio(judged[-1]))})
     people = pd.DataFrame(found)
     constraints = Findings([]).all(judged=[answers for answers in judged if answers])
     means = cell_means(rows, "passable", ["group", "ratio"])
@@ -196,11 +178,7 @@ def _constraints(constraints: Sequence[Constraint]) -> Table:
 class Rotation:
     """The rotation of the shoulders: figures, means beside those of the original and of the baseline, and how well they agree.
 
-    Args:
-        results: The experiment.
-        findings: Its trials.
-        frame: The same as a table; see `frame_of`.
-        others: Means of people, or of another experiment.
+    `findings` are the trials of the experiment, and `frame` is what `frame_of` returns for them.
     """
 
     def __init__(self, results: Results, findings: Findings, frame: Any, others: Sequence[ReferenceMeans]) -> None:
@@ -223,7 +201,14 @@ class Rotation:
         panes = [self._pane(condition, [(group, group, condition) for group in findings.groups]) for condition in findings.conditions]
         parts: Parts = [BASELINE]
         figure = curves_figure(panes, self._x_label, ANGLE, from_zero=True)
-        parts.append(Plot(name="rotation_by_aperture", title=f"Rotation by {self._x}", figure=figure, note=note))
+        parts.append(
+            Plot(
+                name="rotation_by_aperture",
+                title="Rotation by aperture" if self._by_aperture else "Rotation by A/S",
+                figure=figure,
+                note=note,
+            )
+        )
         if several:
             panes = [self._pane(group, [(name, group, name) for name in findings.conditions]) for group in findings.groups]
             figure = curves_figure(panes, self._x_label, ANGLE, from_zero=True)
@@ -246,10 +231,6 @@ class Rotation:
         """The mean angles of people; None if there are none."""
         return next((means for one in self._others if one.look == "human" and len(means := one.of("wall_angle_deg"))), None)
 
-    @property
-    def _x(self) -> str:
-        return "aperture" if self._by_aperture else "A/S"
-
     def _pane(self, title: str, cells: Sequence[tuple[str, str, str]]) -> Pane:
         """Returns a pane with curves, each given by its label, group and condition."""
         scale = 100.0 if self._by_aperture else 1.0
@@ -266,7 +247,8 @@ class Rotation:
                 shared = not self._by_aperture or len({g for _, g, _ in cells}) == 1
                 y = baseline_angle(ratio).tolist()
                 curves.append(Curve(label="" if shared else label, source=GEOMETRY, look="baseline", x=(grid * scale).tolist(), y=y))
-            curves += self._others_curves(label, group, condition, scale)
+            cell = {"group": group, "condition": condition}
+            curves += _curves_beside(self._others, "wall_angle_deg", cell, label, self._findings.by, scale)
         return Pane(title=title, curves=curves)
 
     def _ratio_pane(self, condition: str) -> Pane:
@@ -288,11 +270,6 @@ class Rotation:
         x, y = [100 * aperture * scale for aperture, _ in cells], [angle for _, angle in cells]
         return [Curve(label=label, source=ORIGINAL, look="other", x=x, y=y)] if cells else []
 
-    def _others_curves(self, label: str, group: str, condition: str, scale: float) -> list[Curve]:
-        """Returns the curves of people and of another experiment, where they have angles by aperture."""
-        cell = {"group": group, "condition": condition}
-        return _curves_beside(self._others, "wall_angle_deg", cell, label, self._findings.by, scale)
-
     def _cells(self) -> Table:
         frame = self._means.copy()
         frame["original"], frame["baseline"] = self._original_of(frame), self._baseline(frame)
@@ -302,7 +279,7 @@ class Rotation:
         if not self._original:
             frame = frame.drop(columns="original")
         units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
-        units |= {"aperture": "m"} if self._by_aperture else {}
+        units["aperture"] = "m"
         note = "Angles at the wall; of trials that did not reach it, the greatest angle until then. "
         note += "sd: between participants; low, high: 95 % interval; n: participants; original: the original ACT-R 3D. "
         note += "ratio: the aperture divided by the group's mean shoulder width." if self._by_aperture else ""
@@ -546,13 +523,14 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
     if logistic is not None and math.isinf(logistic.low) and math.isinf(logistic.high):
         logistic = None  # it may be anywhere
     line = bend(*curve)
-    return {
-        "critical_ratio": math.nan if logistic is None else logistic.value,
-        "low": math.nan if logistic is None else logistic.low,
-        "high": math.nan if logistic is None else logistic.high,
-        "beyond": "yes" if logistic is not None and logistic.beyond else "no",
-        "bend": math.nan if line is None else line,
-    }
+    return {**_columns("critical_ratio", logistic), "bend": math.nan if line is None else line}
+
+
+def _columns(name: str, ratio: CriticalRatio | None) -> dict[str, Any]:
+    """Returns the columns of a critical ratio in a table; those of numbers are NaN without one."""
+    if ratio is None:
+        return {name: math.nan, "low": math.nan, "high": math.nan, "beyond": "no"}
+    return {name: ratio.value, "low": ratio.low, "high": ratio.high, "beyond": "yes" if ratio.beyond else "no"}
 
 
 def _places(findings: Findings) -> dict[str, int]:
@@ -597,7 +575,7 @@ def _margins(findings: Findings, frame: Any) -> Parts:
     note += "At wide apertures, the distances depend on the aperture only."
     parts.append(Plot(name="margins", title="Margins on the left, on the right, and on the narrower side", figure=figure, note=note))
     people = pd.concat(of_people)[["group", "condition", "side", by, "mean", "sd", "low", "high", "n"]]
-    units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high"), "cm") | ({"aperture": "m"} if by == "aperture" else {})
+    units: dict[str, str] = {**dict.fromkeys(("mean", "sd", "low", "high"), "cm"), "aperture": "m"}
     digits = dict.fromkeys(units, 2) | {"ratio": 2}
     note = "The means of the figure. sd: between participants; low, high: 95 % interval; n: participants."
     title = "Margins of participants"
@@ -614,25 +592,19 @@ def _margins(findings: Findings, frame: Any) -> Parts:
         rows.append({**row, "largest_difference": float((of["left"] - of["right"]).abs().max())})
     table = in_order(pd.DataFrame(rows), ["group", "condition", by], frame)
     of_sides = [name for name in table if name.startswith((*SIDES, "largest"))]
-    units, digits = dict.fromkeys(of_sides, "cm"), dict.fromkeys(of_sides, 1) | {"aperture": 2, "ratio": 2}
+    units = {**dict.fromkeys(of_sides, "cm"), "aperture": "m"}
+    digits = {**dict.fromkeys(of_sides, 1), "aperture": 2, "ratio": 2}
     note = "Means, least values and sd are of trials, not of participants; largest difference: between the sides of one trial."
-    units |= {"aperture": "m"} if by == "aperture" else {}
     parts.append(Table(name="margins", title="Margins of each cell", frame=table, units=units, digits=digits, note=note, folded=True))
     return [*parts, _contacts(frame), *_onset(findings, frame, x_label, scale)]
 
 
 def _contacts(frame: Any) -> Table:
-    rows: list[dict[str, Any]] = []
-    for (group, condition), of in frame.groupby(["group", "condition"], sort=False, observed=True):
-        counts = {name: int((of["outcome"] == name).sum()) for name in ("passed", "stopped", "declined")}
-        touched = int((of["contacts"] > 0).sum())
-        rows.append(
-            {"group": group, "condition": condition, "trials": len(of), **counts, "touched": touched, "max_force": of["force"].max()}
-        )
+    is_so = {**{name: frame["outcome"] == name for name in ("passed", "stopped", "declined")}, "touched": frame["contacts"] > 0}
+    cells = frame.assign(**is_so).groupby(["group", "condition"], sort=False, observed=True)
+    table = cells.agg(trials=("outcome", "size"), **{name: (name, "sum") for name in is_so}, max_force=("force", "max")).reset_index()
     note = "touched: trials with at least one contact; the force is the greatest of all."
-    return Table(
-        name="contacts", title="Contacts", frame=pandas().DataFrame(rows), units={"max_force": "N"}, digits={"max_force": 1}, note=note
-    )
+    return Table(name="contacts", title="Contacts", frame=table, units={"max_force": "N"}, digits={"max_force": 1}, note=note)
 
 
 def _onset(findings: Findings, frame: Any, x_label: str, scale: float) -> Parts:
@@ -651,7 +623,7 @@ def _onset(findings: Findings, frame: Any, x_label: str, scale: float) -> Parts:
     figure = curves_figure(panes, x_label, "distance from the wall at the onset [m]", from_zero=True)
     note = f"Of trials that turned by more than {TURNED:g} degrees. Means of participants with 95 % bootstrap intervals."
     table = means.rename(columns={"level": findings.by})
-    units = dict.fromkeys(("mean", "sd", "low", "high"), "m") | ({"aperture": "m"} if findings.by == "aperture" else {})
+    units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "aperture"), "m")
     digits = dict.fromkeys(units, 2)
     return [
         Plot(name="onset", title="Onset of the turn", figure=figure, note=note),
@@ -685,7 +657,7 @@ def _starts(results: Results) -> Parts:
         rows[side] = 100 * rows[f"clearance_{side}_m"]
         margins = cell_means(rows, side, keys).rename(columns={"mean": side})
         table = table.merge(margins[[*keys, side]], on=keys, how="left")
-    units = {"start_aside": "m", "start_heading": "degrees", "left": "cm", "right": "cm"} | ({"aperture": "m"} if wide else {})
+    units = {"start_aside": "m", "start_heading": "degrees", "left": "cm", "right": "cm", "aperture": "m"}
     digits = {"start_aside": 2, "start_heading": 0, "passed": 2, "untouched": 2, "left": 1, "right": 1, "aperture": 2}
     note = (
         "untouched: passed without a contact; left, right: mean of the smallest distances to the wall, of those that were in the doorway."

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -47,8 +47,8 @@ WIDE = 1.35
 """Apertures above this ratio are wide."""
 EQUAL = 0.63
 """Below this aperture the large group turns more [m]. Source: 1.30 times the large group's shoulders (docs/human-data.md)."""
-BARS = 8
-"""The number of the constraint that needs bars in the hands."""
+MORE_PARTICIPANTS = "it needs three or more participants in each group"
+"""Why a constraint is not tested with fewer than `MIN_FOR_TESTS`."""
 
 
 class Difference(NamedTuple):
@@ -175,9 +175,8 @@ class Findings:
             judged: The judgements of each participant: the ratio, and whether it judged that it cannot pass without turning; None if it was
                 not asked.
         """
-        made: list[Callable[[], Constraint]] = [self.falls, self.wider_turns_more, self.same_ratio, self.critical, self.faster_turns_more]
-        made += [self.untouched, self.upright, self.longer_bar]
-        return [*(make() for make in made), self.judged(judged)]
+        first = [self.falls(), self.wider_turns_more(), self.same_ratio(), self.critical(), self.faster_turns_more()]
+        return [*first, self.untouched(), self.upright(), self.longer_bar(), self.judged(judged)]
 
     def falls(self) -> Constraint:
         """1: rotation falls with aperture: a larger rise than `STEADY` counts with its whole interval."""
@@ -193,7 +192,7 @@ class Findings:
                     narrow, wide = self._means(group, condition, before), self._means(group, condition, level)
                     changes = [wide[one] - narrow[one] for one in narrow if one in wide]
                     if len(changes) < MIN_FOR_TESTS:
-                        return _untested(1, says, "it needs three or more participants in each group")
+                        return _untested(1, says, MORE_PARTICIPANTS)
                     rises[group, condition, level] = change(changes)
                 if len(there) > 1:
                     fall = min(fall, self.mean(group, condition, there[0]) - self.mean(group, condition, there[-1]))
@@ -229,7 +228,7 @@ class Findings:
         if not cells:
             return _untested(2, says, "it needs apertures below 63 cm")
         if any(len(angles) < MIN_FOR_TESTS for pair in cells.values() for angles in pair):
-            return _untested(2, says, "it needs three or more participants in each group")
+            return _untested(2, says, MORE_PARTICIPANTS)
         differences = {cell: difference(wider, narrower) for cell, (narrower, wider) in cells.items()}
         lowest = min(differences, key=lambda cell: differences[cell].low)
         negative = min(differences, key=lambda cell: differences[cell].high)
@@ -299,7 +298,7 @@ class Findings:
         if not cells or any(not of or not _spans([one.ratio for who in of for one in who], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
         if any(len(of) < MIN_FOR_TESTS for of in cells.values()):
-            return _untested(4, says, "it needs three or more participants in each group")
+            return _untested(4, says, MORE_PARTICIPANTS)
         found = {key: critical_ratio_of_group([[(one.ratio, one.turned) for one in who] for who in of]) for key, of in cells.items()}
         met = {_within(ratio, CRITICAL) for ratio in found.values()}
         text = ", ".join(f"{' '.join(filter(None, key))} {_ratio_text(ratio)}" for key, ratio in found.items())
@@ -322,9 +321,7 @@ class Findings:
                 if below:
                     differences.append(mean(below))
             if len(differences) < MIN_FOR_TESTS:
-                return _untested(
-                    5, says, f"it needs three or more participants in each group, with apertures at ratios below {CRITICAL[0]}"
-                )
+                return _untested(5, says, f"{MORE_PARTICIPANTS}, with apertures at ratios below {CRITICAL[0]}")
             p = above_zero(mean(differences), stdev(differences) / math.sqrt(len(differences)), len(differences) - 1)
             met &= p < 0.05
             found.append(f"{group} {mean(differences):+.1f} degrees (p = {p:.2g})")
@@ -388,17 +385,17 @@ class Findings:
         says = "angle falls with bar length at equal ratio"
         angles = {ratio: bars for ratio, bars in self.bar_angles().items() if len(bars) > 1}
         if not angles:
-            return _untested(BARS, says, "it needs bars of several lengths in the hands")
+            return _untested(8, says, "it needs bars of several lengths in the hands")
         met, found = True, list[str]()
         for ratio, bars in angles.items():
             means = [mean(of.values()) if of else math.nan for of in bars.values()]
             met &= all(a > b for a, b in pairwise(means))
             found.append(f"{', '.join('none' if math.isnan(angle) else f'{angle:.1f}' for angle in means)} at A/S {ratio:g}")
-        lengths = _listed(next(iter(angles.values())))
+        lengths = ", ".join(f"{value:.3g}" for value in next(iter(angles.values())))
         text = f"degrees with bars of {lengths} body widths: {'; '.join(found)}"
         if any(not of for bars in angles.values() for of in bars.values()):
             text += "; none: no walker set out, although people pass"
-        return Constraint(number=BARS, says=says, met=met, found=text)
+        return Constraint(number=8, says=says, met=met, found=text)
 
     def judged(self, participants: Sequence[Sequence[Answer]] | None) -> Constraint:
         """9: the boundary of what is judged to be passable: its whole interval is inside the bounds, outside, or neither."""
@@ -448,10 +445,6 @@ def _sides(left: float, right: float) -> str:
     """Returns the margins on both sides as one number if they are the same."""
     one, other = f"{100 * left:.1f} cm", f"{100 * right:.1f} cm"
     return one if one == other else f"{one} left and {other} right"
-
-
-def _listed(values: Iterable[float]) -> str:
-    return ", ".join(f"{value:.3g}" for value in values)
 
 
 def difference(one: Sequence[float], other: Sequence[float]) -> Difference:

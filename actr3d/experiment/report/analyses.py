@@ -41,19 +41,11 @@ def analysis(*columns: str, people: Collection[str] = ()) -> Callable[[F], F]:
 
 
 def find_analyses(columns: Collection[str]) -> list[Sections]:
-    """Imports the module `analysis` of each package of `actr3d.experiment`, and returns the analyses that can be made.
-
-    Args:
-        columns: The columns of the trials that there are.
-    """
+    """Imports the module `analysis` of each package of `actr3d.experiment`, and returns those of trials with these columns."""
     import_modules(actr3d.experiment.__name__, actr3d.experiment.__path__, inner=True, named="analysis")
     return [function for function in ANALYSES.values() if function.__dict__["needed_columns"] <= set(columns)]
 
 
 def columns_of_people(columns: Collection[str]) -> list[str]:
-    """Returns the further columns of trials of people that some analysis reads.
-
-    Args:
-        columns: The columns of the trials of the experiment.
-    """
+    """Returns the further columns of trials of people that some analysis of an experiment with these columns reads."""
     return list(dict.fromkeys(name for function in find_analyses(columns) for name in function.__dict__["columns_of_people"]))

@@ -111,9 +111,12 @@ def curves_figure(
         panes: The panes.
         x_label: The name of x, with its unit.
         y_label: The name of y, with its unit.
-        ticks: Places on x with their texts; empty to choose them.
+        ticks: Places on x with their texts; empty to choose them, or for the only place that there is.
         from_zero: Whether y begins at 0.
     """
+    places = {x for pane in panes for curve in pane.curves for x in curve.x}
+    if not ticks and len(places) == 1:
+        ticks = [(x, f"{x:g}") for x in places]
     labels = list(dict.fromkeys(curve.label for pane in panes for curve in pane.curves if curve.label))
     columns = min(len(panes), 2)
     rows = math.ceil(len(panes) / columns)
@@ -163,12 +166,9 @@ def new_figure(width: float, height: float) -> Any:
 
 
 def _shade(ax: Any, pane: Pane) -> None:
-    if pane.band is not None:
-        low, high, _ = pane.band
-        ax.axvspan(low, high, color=MUTED, alpha=0.16, linewidth=0)
-    if pane.level is not None:
-        low, high, _ = pane.level
-        ax.axhspan(low, high, color=MUTED, alpha=0.16, linewidth=0)
+    for shade, band in ((ax.axvspan, pane.band), (ax.axhspan, pane.level)):
+        if band is not None:
+            shade(*band[:2], color=MUTED, alpha=0.16, linewidth=0)
 
 
 def _marker(number: int) -> str:
@@ -176,18 +176,22 @@ def _marker(number: int) -> str:
     return MARKERS[(number + number // len(COLOURS)) % len(MARKERS)]
 
 
+def _style(look: str, colour: str, marker: str) -> dict[str, Any]:
+    """Returns the style of a line of matplotlib."""
+    style = dict(LOOKS[look])
+    face = PAPER if style.pop("hollow", False) else colour
+    return {"color": colour, "marker": marker, "markerfacecolor": face, "markeredgecolor": colour, **style}
+
+
 def _draw(ax: Any, curve: Curve, number: int | None, of: int) -> None:
-    look = dict(LOOKS[curve.look])
     colour = INK if number is None else COLOURS[number % len(COLOURS)]
-    marker = "D" if number is None else _marker(number)
-    hollow = look.pop("hollow", False)
-    look = {"marker": marker, "markerfacecolor": PAPER if hollow else colour, "markeredgecolor": colour, **look}
+    style = _style(curve.look, colour, "D" if number is None else _marker(number))
     x = list(curve.x)
     if curve.look == "model" and number is not None and of > 1 and len(x) > 1:  # intervals of two curves must not cover each other
         gap = min((after - before for before, after in pairwise(sorted(set(x)))), default=0)
         step = min(0.012 * (max(x) - min(x)), NEAREST * gap / (of - 1))
         x = [value + step * (number - (of - 1) / 2) for value in x]
-    ax.plot(x, curve.y, color=colour, zorder=2 if curve.look in ("baseline", "other") else 3, **look)
+    ax.plot(x, curve.y, zorder=2 if curve.look in ("baseline", "other") else 3, **style)
     if curve.low is not None and curve.high is not None:
         solid = [n for n in range(len(x)) if math.isfinite(curve.low[n]) and math.isfinite(curve.high[n])]
         lower, upper = [curve.low[n] for n in solid], [curve.high[n] for n in solid]
@@ -200,27 +204,14 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
     patch = matplotlib("patches").Patch
     handles: list[Any] = []
     for number, label in enumerate(labels):
-        colour = COLOURS[number % len(COLOURS)]
-        handles.append(
-            line(
-                [],
-                [],
-                color=colour,
-                linewidth=1.8,
-                marker=_marker(number),
-                markersize=5.5,
-                label=_short(label),
-            )
-        )
+        style = _style("model", COLOURS[number % len(COLOURS)], _marker(number))
+        handles.append(line([], [], label=_short(label), **style))
     curves = [curve for pane in panes for curve in pane.curves]
     sources = {(one.source, one.look): bool(one.label) for one in sorted(curves, key=lambda one: bool(one.label))}
     if len(sources) > 1:
         for source, name in dict.fromkeys((one.source, one.look) for one in curves):
-            look = dict(LOOKS[name])
-            hollow = look.pop("hollow", False)
-            face = PAPER if hollow else INK
-            look = {"marker": "o" if sources[source, name] else "D", "markerfacecolor": face, "markeredgecolor": INK, **look}
-            handles.append(line([], [], color=INK, label=_short(source), **look))
+            style = _style(name, INK, "o" if sources[source, name] else "D")
+            handles.append(line([], [], label=_short(source), **style))
     bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
     handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]
     if handles:

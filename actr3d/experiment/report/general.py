@@ -17,8 +17,18 @@ from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Part, Plot, Section, Table
-from actr3d.experiment.report.reference_means import ReferenceMeans, factors_of, fit_to, matched, missing, ran_at, same_unit, varied_once
-from actr3d.experiment.report.results import Results
+from actr3d.experiment.report.reference_means import (
+    ReferenceMeans,
+    factors_of,
+    fit_to,
+    left_out,
+    matched,
+    missing,
+    ran_at,
+    same_unit,
+    varied_once,
+)
+from actr3d.experiment.report.results import Results, words
 from actr3d.experiment.report.statistics import (
     MIN_FOR_BOOTSTRAP,
     MIN_FOR_TESTS,
@@ -41,7 +51,7 @@ MAX_TICKS = 12
 MAX_KINDS = 20
 """A measure with more different texts than this is not counted."""
 MAX_CELLS = 6
-"""The maximum number of cells with failed trials that are named."""
+"""The maximum number of cells with failed trials, or of cells that are not compared, that are named."""
 TAIL = 700
 """The characters of a failure's message that the page shows: its end."""
 
@@ -109,12 +119,14 @@ def _failed_cells(results: Results) -> str:
     means += "They are not compared with other means."
     if not by:
         return means
-    cells = results.failures[by].drop_duplicates().to_dict("records")
-    named = [
-        ", ".join(f"{name.replace('_', ' ').strip()} {plain_text(level)}" for name, level in cell.items()) for cell in cells[:MAX_CELLS]
-    ]
+    return f" Cells with failed trials: {_listed(results.failures[by].drop_duplicates().to_dict('records'))}.{means}"
+
+
+def _listed(cells: Sequence[Mapping[str, Any]]) -> str:
+    """Returns the conditions of cells as text: of the first `MAX_CELLS`, and how many more there are."""
+    named = [", ".join(f"{words(name)} {plain_text(level)}" for name, level in cell.items()) or "all" for cell in cells[:MAX_CELLS]]
     more = [f"and {len(cells) - MAX_CELLS:,} more"] if len(cells) > MAX_CELLS else []
-    return f" Cells with failed trials: {'; '.join([*named, *more])}.{means}"
+    return "; ".join([*named, *more])
 
 
 def failures(results: Results) -> Table:
@@ -179,6 +191,7 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, re
     if len(fit):
         note = "Agreement of the means of all cells that both have. A model must be compared with a baseline, too."
         found.append(Table(name="fit_to_people", title="Agreement with people", frame=fit, note=note, hidden=["beside"]))
+        found += _left_out(parts, reference)
         found.append(_matched_table(parts, reference, "means_beside_people", "Means beside those of people"))
     if without:
         found.append(f"No human data for: {', '.join(without)}.")
@@ -198,6 +211,7 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
         found.append(Caution(f"Not compared, because {other.label} has them in another unit: {', '.join(units)}."))
     if reference is not None and len(fit := fit_to(parts, reference)):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
+        found += _left_out(parts, reference)
         found.append(_matched_table(parts, reference, "means_beside_other", f"Means beside those of {other.label}"))
     else:
         found.append(Caution("The two experiments have no cell in common without failed trials: their means are not compared."))
@@ -209,7 +223,7 @@ def levels_compared(results: Results, other: Results) -> list[str | Caution]:
     found: list[str | Caution] = []
     for name, (varying, levels) in varied_once(results, other).items():
         which, fixed = ("this experiment", other) if varying is results else (other.label, results)
-        of_groups, what = ran_at(fixed, name, levels), name.replace("_", " ").strip()
+        of_groups, what = ran_at(fixed, name, levels), words(name)
         elsewhere = other.label if fixed is other else "this experiment"
         ran = ", ".join(f"{plain_text(level)}{_unit(varying, name)}" for level in dict.fromkeys(of_groups.values()))
         if not of_groups:
@@ -223,6 +237,18 @@ def levels_compared(results: Results, other: Results) -> list[str | Caution]:
             if left := [group for group in fixed.groups if group not in of_groups]:
                 found.append(Caution(f"Groups of {elsewhere} without one level of {what} are not compared: {', '.join(left)}."))
     return found
+
+
+def _left_out(parts: Sequence[Results], reference: ReferenceMeans) -> list[str]:
+    """Returns sentences that name the conditions of the means beside that are not compared, of measures of which some are."""
+    measures: dict[str, list[str]] = {}
+    for results, measure in ((part, measure) for part in parts for measure in part.measures):
+        cells = matched(results, reference, measure)
+        if len(cells) and (others := left_out(results, reference, measure, cells)):
+            several = len({*results.groups, *(cell["group"] for cell in others if "group" in cell)}) > 1
+            shown = [{name: level for name, level in cell.items() if several or name != "group"} for cell in others]
+            measures.setdefault(_listed(shown), []).append(measure)
+    return [f"Left out of the means of {reference.label} for {', '.join(of)}: {conditions}." for conditions, of in measures.items()]
 
 
 def _matched_table(parts: Sequence[Results], reference: ReferenceMeans, name: str, title: str) -> Table:
@@ -261,7 +287,7 @@ def _outcomes(results: Results, measure: str) -> Iterator[Part]:
     rows = results.rows[[*by, measure]].fillna({measure: "none"}).rename(columns={measure: column})
     if rows[column].nunique() <= MAX_KINDS:
         counts = in_order(rows.groupby([*by, column], observed=True).size().rename("trials").reset_index(), by, rows)
-        yield Table(name=f"counts_{measure}", title=f"Trials by {measure.replace('_', ' ')}", frame=counts)
+        yield Table(name=f"counts_{measure}", title=f"Trials by {words(measure)}", frame=counts)
         yield from _shares(results, measure)
 
 
@@ -271,22 +297,15 @@ def _shares(results: Results, measure: str) -> Iterator[Table | Plot]:
     texts = sorted(rows[measure].unique())
     if layout is None or layout.x == "group" or len(texts) < 2:
         return
-    x, column, title = layout.x, factor_name(measure), f"Shares of each {measure.replace('_', ' ')} by {layout.x.replace('_', ' ')}"
+    x, column, title = layout.x, factor_name(measure), f"Shares of each {words(measure)} by {words(layout.x)}"
     by = [*results.by_group, x]
     of = {text: cell_means(rows.assign(**{measure: (rows[measure] == text) * 1.0}), measure, by) for text in texts}
-    levels: dict[str, Sequence[Any]] = {**results.factors, column: texts}
     frame = in_order(pandas().concat([means.assign(**{column: text}) for text, means in of.items()]), by, rows)
-    places, ticks = _axis(levels[x])
-    panes: list[Pane] = []
-    for group in results.groups:
-        source = ("model", "model", frame[frame["group"] == group] if "group" in by else frame)
-        curves = _curves(source, {}, replace(layout, curves=column), levels, places)
-        panes.append(Pane(title=group if "group" in by else "", curves=curves))
+    over = [name for name in results.factors if name != x]
+    layout = replace(layout, curves=column, panes=results.by_group, averaged=over, levels={**layout.levels, column: texts})
+    figure = _figure(results, layout, [("model", "model", frame)], "share of trials", from_zero=True)
     note = "Shares of the trials of a participant, averaged over participants, with 95 % bootstrap intervals."
-    if averaged := [name for name in results.factors if name != x]:
-        note += f" Averaged over: {', '.join(averaged)}."
-    figure = curves_figure(panes, results.name_with_unit(x), "share of trials", ticks=ticks, from_zero=True)
-    yield Plot(name=f"shares_{measure}", title=title, figure=figure, note=note)
+    yield Plot(name=f"shares_{measure}", title=title, figure=figure, note=note + layout.note)
     frame = frame[[*by, column, "mean", "sd", "low", "high", "n", "trials"]]
     yield Table(name=f"shares_{measure}", title=title, frame=frame, heads={"mean": "share"}, folded=True)
 
@@ -342,6 +361,9 @@ def test_parts(tests: Tests, measure: str) -> list[Part]:
 
 # -- the figure of a measure
 
+Source = tuple[str, Look, Any]
+"""Means of a figure: whose they are, their look, and a `DataFrame` of them."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Layout:
@@ -352,22 +374,29 @@ class Layout:
     panes: Sequence[str]
     averaged: Sequence[str]
     """Factors that the figure averages over."""
+    levels: Mapping[str, Sequence[Any]]
+    """The levels of factors, groups and curves."""
+
+    @property
+    def note(self) -> str:
+        """What the note of a figure says of them."""
+        return f" Averaged over: {', '.join(self.averaged)}." if self.averaged else ""
 
 
 def layout_of(results: Results) -> Layout | None:
     """Returns the layout of the figures of an experiment: x is what values are numbered by, or else the factor with the most levels,
     numbers before texts; the groups, or the next factor, are curves; other factors are panes, as long as there are few. Returns None if
     there is nothing to lay out."""
-    factors = results.factors
+    factors, levels = results.factors, {**results.all_factors, "group": results.groups}
     order = sorted(factors, key=lambda name: (name not in results.numbers, isinstance(factors[name][0], str), -len(factors[name])))
     left = [*order[1:]] if order else []
     if not order:
-        return Layout(x="group", curves=None, panes=(), averaged=()) if results.by_group else None
+        return Layout(x="group", curves=None, panes=(), averaged=(), levels=levels) if results.by_group else None
     curves = "group" if results.by_group else left.pop(0) if left else None
     panes: list[str] = []
     while left and np.prod([len(factors[name]) for name in [*panes, left[0]]]) <= MAX_PANES:
         panes.append(left.pop(0))
-    return Layout(x=order[0], curves=curves, panes=panes, averaged=left)
+    return Layout(x=order[0], curves=curves, panes=panes, averaged=left, levels=levels)
 
 
 def figure_of(results: Results, measure: str, others: Sequence[ReferenceMeans]) -> tuple[Any, str]:
@@ -375,23 +404,29 @@ def figure_of(results: Results, measure: str, others: Sequence[ReferenceMeans]) 
     layout = layout_of(results)
     if layout is None:
         return None, ""
-    levels: dict[str, Sequence[Any]] = {**results.all_factors, "group": results.groups}
     by = [name for name in (*layout.panes, layout.curves, layout.x) if name is not None]
-    places, ticks = _axis(levels[layout.x])
-    sources: list[tuple[str, Look, Any]] = [("model", "model", cell_means(results.rows, measure, by))]
+    sources: list[Source] = [("model", "model", cell_means(results.rows, measure, by))]
     for one in others:
         sources.append((one.label, one.look, _averaged(one, measure, by, results)))  # noqa: PERF401 - pyright infers other types
+    figure = _figure(results, layout, sources, results.name_with_unit(measure))
+    return figure, f"Means of participants with 95 % bootstrap intervals.{layout.note}"
+
+
+def _figure(results: Results, layout: Layout, sources: Sequence[Source], y_label: str, *, from_zero: bool = False) -> Any:
+    """Returns a figure of means; `from_zero` is whether y begins at 0."""
+    places, ticks = _axis(layout.levels[layout.x])
     panes: list[Pane] = []
-    for cell in itertools.product(*(levels[name] for name in layout.panes)):
+    for cell in itertools.product(*(layout.levels[name] for name in layout.panes)):
         here = dict(zip(layout.panes, cell, strict=True))
-        curves = [curve for source in sources for curve in _curves(source, here, layout, levels, places)]
-        title = ", ".join(f"{name.replace('_', ' ')} {plain_text(level)}{_unit(results, name)}" for name, level in here.items())
+        curves = [curve for source in sources for curve in _curves(source, here, layout, places)]
+        title = ", ".join(f"{_named(name, level)}{_unit(results, name)}" for name, level in here.items())
         panes.append(Pane(title=title, curves=curves))
-    figure = curves_figure(panes, results.name_with_unit(layout.x), results.name_with_unit(measure), ticks=ticks)
-    note = "Means of participants with 95 % bootstrap intervals."
-    if layout.averaged:
-        note += f" Averaged over: {', '.join(layout.averaged)}."
-    return figure, note
+    return curves_figure(panes, results.name_with_unit(layout.x), y_label, ticks=ticks, from_zero=from_zero)
+
+
+def _named(name: str, level: Any) -> str:
+    """Returns a level with the name of its column; a group alone."""
+    return str(level) if name == "group" else f"{words(name)} {plain_text(level)}"
 
 
 def _axis(levels: Sequence[Any]) -> tuple[dict[Any, float], list[tuple[float, str]]]:
@@ -402,24 +437,18 @@ def _axis(levels: Sequence[Any]) -> tuple[dict[Any, float], list[tuple[float, st
     return places, [(place, str(level)) for level, place in places.items()]
 
 
-def _curves(
-    source: tuple[str, Look, Any],
-    here: Mapping[str, Any],
-    layout: Layout,
-    levels: Mapping[str, Sequence[Any]],
-    places: Mapping[Any, float],
-) -> list[Curve]:
+def _curves(source: Source, here: Mapping[str, Any], layout: Layout, places: Mapping[Any, float]) -> list[Curve]:
     """Returns the curves of one source in one pane: one for each level, and one of the means over all levels."""
     label, look, frame = source
     name, found = layout.curves, list[Curve]()
     rows = [row for row in frame.to_dict("records") if all(missing(row[key]) or row[key] == level for key, level in here.items())]
     rows = [row for row in rows if not missing(row[layout.x])]
-    for level in [None] if name is None else [*levels[name], None]:
+    for level in [None] if name is None else [*layout.levels[name], None]:
         of = [row for row in rows if name is None or (missing(row[name]) if level is None else row[name] == level)]
         points = sorted((float(places.get(row[layout.x], row[layout.x])), row["mean"], row["low"], row["high"]) for row in of)
         if points:
             x, y, low, high = (list(values) for values in zip(*points, strict=True))
-            text = "" if name is None or level is None else level if name == "group" else f"{name.replace('_', ' ')} {plain_text(level)}"
+            text = "" if name is None or level is None else _named(name, level)
             found.append(Curve(label=text, source=label, look=look, x=x, y=y, low=low, high=high))
     return found
 

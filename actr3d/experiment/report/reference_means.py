@@ -20,6 +20,9 @@ from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import cell_means, rmse_and_r
 
+Cell = Mapping[str, Any]
+"""The conditions of a mean: the group and the levels of factors."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ReferenceMeans:
@@ -35,8 +38,8 @@ class ReferenceMeans:
     """The trials of another experiment, as `at_common_levels` returns them; None for people."""
     trials: Any = None
     """The trials of people, a `DataFrame` with the columns of their file that a report uses; None for published means."""
-    left_out: Mapping[str, int] = field(default_factory=dict[str, int])
-    """How many more means another experiment has of each measure: those at other levels than this one ran at."""
+    elsewhere: Mapping[str, Sequence[Cell]] = field(default_factory=dict[str, "Sequence[Cell]"])
+    """The conditions of further means of another experiment by measure: those at other levels than this one ran at."""
 
     def of(self, measure: str) -> Any:
         """Returns the rows of a measure."""
@@ -75,22 +78,19 @@ def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | N
     Raises:
         ExperimentError: If the file does not follow the schema.
     """
+    schema = schema_of(parts)
     if file is not None:
-        data = HumanFile(file).read(schema_of(parts))
+        data = HumanFile(file).read(schema)
         return (data, "") if data.rows or data.published else (None, f"{data.name}: {' '.join(data.notes)}")
     name, known = design.human, library_human_data()
     if name is None:
         return None, "The design names no human data, and none were given with --human."
     if name not in known:
         return None, f"The design names the human data '{name}', which the library does not have, and none were given with --human."
-    if not set(schema_of(parts).measures) & _measures_in(known[name]):
+    # The words of the file are enough to know whether a measure of the experiment occurs in it.
+    if set(schema.measures).isdisjoint(known[name].read_text(encoding="utf-8").replace("\n", ",").split(",")):
         return None, f"The published means '{name}' are of other measures than this experiment has."
-    return HumanFile(known[name]).read(schema_of(parts)), ""
-
-
-def _measures_in(path: Path) -> set[str]:
-    """Returns the words of a file: enough to know whether a measure of the experiment occurs in it."""
-    return set(path.read_text(encoding="utf-8").replace("\n", ",").split(","))
+    return HumanFile(known[name]).read(schema), ""
 
 
 def means_of_people(data: HumanData, parts: Sequence[Results]) -> ReferenceMeans:
@@ -118,22 +118,24 @@ def means_of_people(data: HumanData, parts: Sequence[Results]) -> ReferenceMeans
 
 def means_of_experiment(others: Sequence[Results], parts: Sequence[Results]) -> ReferenceMeans | None:
     """Returns the means of another experiment, at the levels at which both ran; None if it has no measure in common, or no such trials."""
-    pd, pieces, left_out = pandas(), list[Any](), dict[str, int]()
+    pd, pieces, elsewhere = pandas(), list[Any](), dict[str, Sequence[Cell]]()
     for part, other in itertools.product(parts, others):
         if part.numbers.keys() == other.numbers.keys():
             alike = at_common_levels(other, part)
             for measure in part.measures:
                 if measure in other.measures and same_unit(part, other, measure):
-                    cells = cell_means(alike.rows, measure, ["group", *part.all_factors])
-                    pieces.append(cells.assign(measure=measure))
-                    whole = other.rows[other.rows[measure].notna()].groupby(["group", *other.all_factors], observed=True)
-                    left_out[measure] = whole.ngroups - len(cells)
+                    pieces.append(cell_means(alike.rows, measure, ["group", *part.all_factors]).assign(measure=measure))
+                    keys = ["group", *other.all_factors]
+                    every, common = (
+                        dict.fromkeys(of.rows[of.rows[measure].notna()][keys].itertuples(index=False, name=None)) for of in (other, alike)
+                    )
+                    elsewhere[measure] = [dict(zip(keys, cell, strict=True)) for cell in every if cell not in common]
     if not any(map(len, pieces)):
         return None
     frame = pd.concat([piece for piece in pieces if len(piece)], ignore_index=True)
     columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
     results = at_common_levels(others[0], parts[0])
-    return ReferenceMeans(label=results.label, look="other", frame=frame.reindex(columns=columns), results=results, left_out=left_out)
+    return ReferenceMeans(label=results.label, look="other", frame=frame.reindex(columns=columns), results=results, elsewhere=elsewhere)
 
 
 def at_common_levels(other: Results, results: Results) -> Results:
@@ -207,6 +209,16 @@ def matched(results: Results, reference: ReferenceMeans, measure: str) -> Any:
     return without_failures(found, keys, [results, *([] if reference.results is None else [reference.results])])
 
 
+def left_out(results: Results, reference: ReferenceMeans, measure: str, cells: Any) -> list[Cell]:
+    """Returns the conditions of the means of a measure that are not compared: all but the cells that `matched` returned."""
+    keys = ["group", *results.all_factors]
+    both, beside = (
+        {tuple((key, row[key]) for key in keys if not missing(row[key])): None for row in frame.to_dict("records")}
+        for frame in (cells, reference.of(measure))
+    )
+    return [*(dict(cell) for cell in beside if cell not in both), *reference.elsewhere.get(measure, ())]
+
+
 def without_failures(cells: Any, keys: Sequence[str], experiments: Sequence[Results]) -> Any:
     """Returns those cells of a `DataFrame` in which no trial of some experiments has failed, as in a fit: the means of the others would be
     those of the easier trials.
@@ -255,8 +267,8 @@ def fit_to(parts: Sequence[Results], reference: ReferenceMeans) -> Any:
             rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
-            left_out = len(reference.of(measure)) - len(cells) + reference.left_out.get(measure, 0)
-            row = {"measure": measure, "unit": unit, "beside": reference.label, "cells": len(cells), "left_out": left_out}
+            row = {"measure": measure, "unit": unit, "beside": reference.label, "cells": len(cells)}
+            row["left_out"] = len(left_out(results, reference, measure, cells))
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
     return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])
 

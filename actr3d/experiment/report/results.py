@@ -120,8 +120,13 @@ def by_number(results: Results) -> list[Results]:
 def name_with_unit(name: str, unit: str) -> str:
     """Returns a name for axes: words instead of underscores, and the unit instead of an ending that is the same: `clearance left [m]`."""
     base = name.removesuffix(ENDINGS.get(unit, f"_{unit.lower()}")) if unit else name
-    words = SHORT.get(base, base.replace("_", " ").strip())
-    return f"{words} [{unit}]" if unit else words
+    shown = SHORT.get(base, words(base))
+    return f"{shown} [{unit}]" if unit else shown
+
+
+def words(name: str) -> str:
+    """Returns a name with spaces instead of underscores, and without that of `factor_name` at its end."""
+    return name.replace("_", " ").strip()
 
 
 def read_results(folder: Path | str) -> Results:

@@ -33,6 +33,11 @@ NO_SPREAD = 1e-6
 """Participants differ in an effect if the standard deviation of their differences is above this, relative to that of all means.
 Analyses of variance subtract sums of squares, which have 15 to 16 digits: of smaller differences, nothing but rounding is left."""
 
+CHECKS = ("assumption", "test", "statistic", "p", "holds")
+"""The columns of the table of checks of assumptions."""
+Check = tuple[str, str, float, float, str]
+"""A row of it."""
+
 
 def bootstrap_interval(values: Sequence[float]) -> tuple[float, float]:
     """Returns the 95 % percentile interval of the mean over bootstrap samples of participants; NaN for fewer than two."""
@@ -75,12 +80,10 @@ def cell_means(rows: Any, measure: str, by: Sequence[str]) -> Any:
     for key, cell in cells:
         values = cell["value"].to_numpy()
         low, high = bootstrap_interval(values)
+        mean = float(values.mean()) if len(values) else float("nan")
         sd = float(np.std(values, ddof=1)) if len(values) > 1 else float("nan")
-        place = dict(zip(by, key, strict=True))
-        found.append(
-            {**place, "mean": float(values.mean()) if len(values) else float("nan"), "sd": sd, "low": low, "high": high, "n": len(values)}
-        )
-        found[-1]["trials"] = int(cell["trials"].sum())
+        row = {"mean": mean, "sd": sd, "low": low, "high": high, "n": len(values), "trials": int(cell["trials"].sum())}
+        found.append({**dict(zip(by, key, strict=True)), **row})
     return in_order(pandas().DataFrame(found, columns=[*by, "mean", "sd", "low", "high", "n", "trials"]), by, rows)
 
 
@@ -151,7 +154,7 @@ def run_tests(results: Results, measure: str) -> Tests:
             "Both may differ where the groups differ in the effect of a factor."
         )
     anova: list[dict[str, Any]] = []
-    checks: list[dict[str, Any]] = []
+    checks: list[Check] = []
     mixed = None
     with noting_warnings() as warned:
         _analyse_variance(whole, results, anova, checks, notes)
@@ -168,10 +171,12 @@ def run_tests(results: Results, measure: str) -> Tests:
         )
     # Of its attempts to fit, only the end matters: `_mixed_model` says if it is not known.
     notes += [f"Note of a library: {text}" for text in warned if "optimization" not in text]
-    return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
+    return Tests(
+        anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks, columns=CHECKS), notes=notes
+    )
 
 
-def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]], checks: list[dict[str, Any]], notes: list[str]) -> None:
+def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]], checks: list[Check], notes: list[str]) -> None:
     """Adds the rows of all analyses of variance: one factor within participants at a time, and pairs of them.
 
     An effect in which participants do not differ is not tested: its F would be a number divided by rounding.
@@ -282,7 +287,7 @@ def _add(anova: list[dict[str, Any]], of: str, found: Any, names: dict[str, str]
         )
 
 
-def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any, *, testable: bool) -> None:
+def _add_sphericity(checks: list[Check], factor: str, found: Any, *, testable: bool) -> None:
     """Adds the check of the sphericity of a factor.
 
     Args:
@@ -294,20 +299,13 @@ def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any, *, te
     """
     row: dict[str, Any] = next((one for one in found.to_dict("records") if one["Source"] == factor), dict[str, Any]())
     p = row.get("p_spher", np.nan) if testable else np.nan
-    eps = row.get("eps", np.nan)
-    holds = "" if not np.isfinite(p) else "yes" if p >= LEVEL else "no: use the corrected p (Greenhouse-Geisser)"
-    checks.append(
-        {
-            "assumption": f"sphericity of {factor}",
-            "test": "Mauchly",
-            "statistic": row.get("W_spher", np.nan) if testable else np.nan,
-            "p": p,
-            "holds": holds or f"cannot be tested with so few participants: use the corrected p (ε = {eps:.2f})",
-        }
-    )
+    holds = "yes" if p >= LEVEL else "no: use the corrected p (Greenhouse-Geisser)"
+    if not np.isfinite(p):
+        holds = f"cannot be tested with so few participants: use the corrected p (ε = {row.get('eps', np.nan):.2f})"
+    checks.append((f"sphericity of {factor}", "Mauchly", row.get("W_spher", np.nan) if testable else np.nan, p, holds))
 
 
-def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks: list[dict[str, Any]]) -> None:
+def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks: list[Check]) -> None:
     """Adds the checks of normality, of participants' means and of their effects of each factor, and of equal variances of the groups."""
     pg, least = pingouin(), _least_spread(whole)
     scores = {"participants' means": _over(whole, [])}
@@ -324,15 +322,11 @@ def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks
             continue
         found = pg.normality(sample).iloc[0]
         says = "yes" if found["pval"] >= LEVEL else "no: prefer the bootstrap intervals"
-        checks.append(
-            {"assumption": f"normality of {name}", "test": "Shapiro-Wilk", "statistic": found["W"], "p": found["pval"], "holds": says}
-        )
+        checks.append((f"normality of {name}", "Shapiro-Wilk", found["W"], found["pval"], says))
     if grouped and _spread(_over(whole, []), []) > least:
         found = pg.homoscedasticity(_over(whole, []), dv="value", group="group").iloc[0]
         says = "yes" if found["pval"] >= LEVEL else "no: the groups differ in their spread"
-        checks.append(
-            {"assumption": "equal variances of groups", "test": "Levene", "statistic": found["W"], "p": found["pval"], "holds": says}
-        )
+        checks.append(("equal variances of groups", "Levene", found["W"], found["pval"], says))
 
 
 def _mixed_model(means: Any, factors: Sequence[str], grouped: bool, notes: list[str]) -> Any:

@@ -439,6 +439,33 @@ def test_cells_with_failed_trials_are_named_and_not_compared(tmp_path: Path) -> 
         assert list(fit_to([one], beside)["cells"]) == [2, 2]
 
 
+def test_means_that_are_not_compared_are_named(tmp_path: Path) -> None:
+    def measures(trial: Any) -> dict[str, Any]:
+        return {"error": "ValueError: no"} if trial.values["n"] == 5 else {**count(trial), "luck": None if trial.values["n"] == 4 else 0.5}
+
+    one, two = (tmp_path / name for name in ("one", "two"))
+    path = str(write_experiment(tmp_path, participants=1, trials=1, factors='{"n": [1, 2, 3, 4, 5]}'))
+    failing = read_results(store_rows(one, path, measures))
+    more = read_results(store_rows(two, path, count, values={"n": [1, 2, 5, *range(6, 13)]}))
+    beside = means_of_experiment([more], [failing])
+    assert beside is not None
+    parts = comparison_section(failing, more, [failing], beside).parts
+    assert "Left out of the means of two for rt, luck: n 5; n 6; n 7; n 8; n 9; n 10; and 2 more." in parts
+    assert list(frames(parts)["fit_to_other"]["left_out"]) == [8, 8]
+    people = tmp_path / "people.csv"
+    means = [
+        f"{group},{n},{measure},0.1,2,own" for measure, n, group in [("rt", 1, "all"), ("rt", 5, ""), ("luck", 1, ""), ("luck", 4, "all")]
+    ]
+    people.write_text("\n".join(["group,n_,measure,mean,n,source", *means]), encoding="utf-8")
+    data, _ = human_data_of(failing.design, [failing], people)
+    assert data is not None
+    said = general.human_section([failing], data, "", means_of_people(data, [failing])).parts
+    assert [text for text in said if isinstance(text, str) and text.startswith("Left out")] == [
+        "Left out of the means of people for rt: n 5.",
+        "Left out of the means of people for luck: n 4.",
+    ]
+
+
 def test_cells_with_failed_walks_agree_with_nothing(people: Path, tmp_path: Path) -> None:
     def measures(trial: Any) -> dict[str, Any]:
         failed = trial.values["aperture"] == 0.5 and trial.participant.name == "small 2"
@@ -618,6 +645,8 @@ def test_a_factor_that_one_experiment_varies_is_compared_at_the_level_of_the_oth
         parts = comparison_section(results, other, [results], beside).parts
         means = frames(parts)["means_beside_other"].query("measure == 'rt'") if common else pandas().DataFrame({"model": [], "beside": []})
         assert list(means["model"]) == list(means["beside"]) == common
+        levels = [f"pace {level}" for level in (1, 2, 3) if 3.0 + 10 * level not in common] if other is one else ["n 1"]
+        assert (f"Left out of the means of {other.label} for rt, luck: {'; '.join(levels)}." in parts) == bool(common)
         agreement = frames(parts)["fit_to_other"] if common else pandas().DataFrame({"left_out": []})
         assert list(agreement["left_out"]) == [2 if other is one else 1] * 2 * len(common)
         assert ("have no cell in common" in cautions(parts)) == (not common)
@@ -747,6 +776,30 @@ def test_levels_of_several_types_are_the_same_texts_in_both_tables_and_in_data_o
     assert [plain_text(one.conditions["word"]) for one in found] == [plain_text(level) for level in levels_of_design]
 
 
+@pytest.mark.parametrize("factors", ['{"sd": ["a", "b"], "n": [1, 2, 5]}', '{"sd": ["a", "b"], "n": [1, 2, 5], "mode": ["x", "y"]}'])
+def test_names_that_reports_change_are_shown_in_figures_as_the_design_has_them(tmp_path: Path, factors: str) -> None:
+    model = COUNTER.replace("n = 3", "n = 3\nsd = 'a'")
+    results = read_results(store_rows(tmp_path / "out", str(write_experiment(tmp_path, factors=factors, model=model)), count))
+    figure, _ = general.figure_of(results, "rt", [])
+    labels = [line.get_label() for line in figure.legends[0].get_lines()]
+    assert labels == ["sd a", "sd b"]
+    grouped = replace(results, design=replace(results.design, groups={**results.design.groups, "old": results.design.groups["all"]}))
+    titles = [axes.get_title(loc="left") for axes in general.figure_of(grouped, "rt", [])[0].axes]
+    assert titles == (["sd a", "sd b"] if "mode" not in factors else [f"sd {sd}, mode {mode}" for sd in "ab" for mode in "xy"])
+
+
+def test_a_figure_with_one_place_on_x_has_a_tick_there_alone() -> None:
+    def ticks(x: list[float]) -> list[str]:
+        pane = Pane(title="", curves=[Curve(label=label, source="model", look="model", x=x, y=[1.0 for _ in x]) for label in "ab"])
+        figure = curves_figure([pane], "x", "y")
+        figure.draw_without_rendering()
+        return [tick.get_text() for tick in figure.axes[0].get_xticklabels()]
+
+    assert ticks([0.45]) == ["0.45"]
+    assert len(ticks([0.45, 0.5])) > 1
+    assert ticks([]) != []
+
+
 def test_dollar_signs_in_names_are_drawn_as_they_are() -> None:
     curve = Curve(label=r"$\frac{$", source="model", look="model", x=[1, 2], y=[1, 2])
     drawn = svg(curves_figure([Pane(title="costs $5 or $6", curves=[curve])], "x", "y"))
@@ -788,8 +841,9 @@ def test_shares_of_the_texts_of_a_measure_are_shown_by_the_first_factor(tmp_path
     ]
     assert tables["counts_trials"].to_dict("records")[0] == {"trials_": "no", "trials": 9}
     assert tables["shares_mean"]["mean_"].to_list() == ["no", "none", "yes"] * 3
-    (plot, *_) = (part for part in everything.parts if isinstance(part, Plot))
-    assert [line.get_label() for line in plot.figure.legends[0].get_lines()] == ["rt no", "rt none", "rt yes"]
+    plots = [part for part in everything.parts if isinstance(part, Plot)]
+    for plot, name in zip(plots, ("rt", "trials", "mean"), strict=True):
+        assert [line.get_label() for line in plot.figure.legends[0].get_lines()] == [f"{name} no", f"{name} none", f"{name} yes"]
     report = write_report(tmp_path / "out").parent
     assert (report / "tables" / "shares_rt.csv").exists()
     assert (report / "figures" / "shares_rt.png").exists()
