@@ -294,8 +294,8 @@ def _add_experiment(commands: Any) -> None:
         help="run an experiment with a model",
         description="Runs all trials of a design on all processors or a Dask cluster, and stores a row for each; without a name, lists the "
         "library's designs. Killed at any moment and continued with --resume, it loses no finished trial.",
-        epilog="Exit codes: 0 all trials ran; 1 some failed, or the experiment cannot go on; 2 wrong options or an invalid design; "
-        "130 it was stopped.",
+        epilog="Exit codes: 0 all trials ran; 1 some failed, or the experiment cannot go on; 2 wrong options, an invalid design, or the "
+        "output could not be written; 130 it was stopped.",
     )
     experiment.add_argument("name", metavar="NAME|FILE|FOLDER", nargs="?", help="a design, a file with one, or the folder of an experiment")
     _add_design_options(experiment)
@@ -327,8 +327,8 @@ def _add_fit(commands: Any) -> None:
         help="fit parameters of a model to data",
         description="Fits parameters of a model to means of human data, with intervals. The candidates stay in the folder: a fit that was "
         "stopped continues there.",
-        epilog="Exit codes: 0 the parameters are fitted; 1 they cannot be fitted; 2 wrong options, an invalid design, or a package is "
-        "missing; 130 it was stopped.",
+        epilog="Exit codes: 0 the parameters are fitted; 1 they cannot be fitted, or the output could not be written; 2 wrong options, an "
+        "invalid design, or a package is missing; 130 it was stopped.",
     )
     fit.add_argument("name", metavar="NAME|FILE", help="a design, or a file with one")
     fit.add_argument("--parameter", action="append", default=[], metavar="NAME=LOW..HIGH", help="a parameter, and the range to search")
@@ -369,7 +369,8 @@ def _add_report(commands: Any) -> None:
         help="write the report of an experiment",
         description="Writes a page with figures, tables and statistics of an experiment: report/index.html in its folder, which needs no "
         "network, with each figure as PNG and SVG and each table as CSV beside it.",
-        epilog="Exit codes: 0 the report is written; 1 it is missing or incomplete, or the data are not valid; 2 a package is missing.",
+        epilog="Exit codes: 0 the report is written; 1 it is missing or incomplete, the data are not valid, or the output could not be "
+        "written; 2 a package is missing.",
     )
     report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
     report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
@@ -467,7 +468,7 @@ def _report(options: argparse.Namespace) -> int:
     return 0
 
 
-UNWRITTEN = {"replay": 2, "bench": 2}
+UNWRITTEN = {"replay": 2, "bench": 2, "experiment": 2}
 """The exit codes if the output cannot be written, of the commands whose exit code 1 is a finding."""
 BESIDE_CHECK = ("workers", "scheduler", "out", "resume", "any_version")
 """The options of `actr3d experiment` that mean nothing for a check."""
@@ -502,18 +503,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
     given = list(sys.argv[1:] if arguments is None else arguments)
     with standard_output(apart=False) as out, printing_to(out):
+        code: Any = 0
         try:
             code = _command(given)
         except (OSError, SystemExit) as error:
             unwritten = all_written(out, None)
             if unwritten is None or (isinstance(error, OSError) and error is not unwritten):
                 raise
+            if isinstance(error, SystemExit):
+                code = error.code
         else:
             unwritten = all_written(out, None)
             if unwritten is None:
                 return code
         _complain_of_output(unwritten)
-        return UNWRITTEN.get(given[0], 1)
+        return code if code not in (0, 1) else UNWRITTEN.get(given[0], 1)
 
 
 def _command(arguments: list[str]) -> int:

@@ -19,8 +19,6 @@ from types import BuiltinFunctionType, FunctionType, MappingProxyType, MethodTyp
 from typing import Any, cast
 from uuid import UUID
 
-import msgspec
-
 BASIC = frozenset({str, float, int, bool, type(None)})
 """The types that are already plain."""
 WORDED = frozenset({bytes, bytearray, complex, range, Decimal, Fraction, date, datetime, time, timedelta, UUID})
@@ -38,8 +36,7 @@ LONGEST = 14_000
 NOT_TRACED: Mapping[str, bool] = MappingProxyType({"not_traced": True})
 """The metadata of a dataclass field that traces and recordings omit, because they have its value elsewhere."""
 
-_ENCODE_FAST = msgspec.json.Encoder().encode
-_ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False, separators=(",", ":")).encode
+_ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
 
 Namer = Callable[[object], str | None]
 
@@ -145,23 +142,17 @@ def to_json(value: Any) -> str:
 
 
 def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
-    """Returns what `to_json` does, without its spaces, for a value that is already plain, as the data of events are; ten times faster.
+    """Returns the same as `to_json`, for a value that is already plain, as the data of events are; several times faster.
 
     Args:
         value: The value.
         otherwise: Converts the value to JSON if JSON cannot represent all of it.
     """
     try:
-        line = _ENCODE_FAST(value)
-        if b"null" not in line:  # it also writes null for the numbers that JSON does not have
-            return line.decode()
+        line = _ENCODE(value)
     except (TypeError, ValueError, RecursionError):
-        pass
-    try:
-        text = _ENCODE(value)
-    except (TypeError, ValueError, RecursionError):
-        text = otherwise(value)
-    return escape_surrogates(text)
+        line = otherwise(value)
+    return escape_surrogates(line)
 
 
 def shortened(text: str, most: int) -> str:

@@ -36,7 +36,7 @@ const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, {
 
 const TABS = PANELS.filter(({ needs = null }) => isAvailable(needs));
 
-const SILENT = `The ${embedded === null ? "workbench" : "kernel"} does not answer; what you asked for is done as soon as it does …`;
+const SILENT = `The ${embedded === null ? "workbench" : "kernel"} does not answer …`;
 
 const onePanel = () => "This window shows one panel.";
 TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => goToTab(id), ready: () => alone === null, why: onePanel }));

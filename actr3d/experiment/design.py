@@ -7,6 +7,7 @@ import json
 import math
 import signal
 import threading
+import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
@@ -40,6 +41,8 @@ FINEST = 1e-5
 """The least standard deviation of a distribution."""
 LONGEST_TIMER = 1e8
 """A timer of the system cannot be much longer than this [s]."""
+AGAIN = 1.0
+"""The interval at which what has run out of time is ended again if it goes on [s]."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
 RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
@@ -200,6 +203,10 @@ class Measured(Configuration):
         else:
             numbers = itertools.takewhile(lambda number: f"{self.name}_{number}" in row, itertools.count(1))
             yield from (({self.over: number}, row[f"{self.name}_{number}"]) for number in numbers)
+
+
+class _OutOfTime(BaseException):
+    """A function of a design has not returned in time; it is no `Exception`, which such a function may catch."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -421,8 +428,9 @@ class Design(Configuration):
             return dict(values)
         try:
             more: Any = self.derive(values)
-        except (Exception, SystemExit) as error:
-            raise DesignError(f"Design.derive: failed with {type(error).__name__}: {error} (given {dict(values)!r})", "derive") from error
+        except (Exception, SystemExit, _OutOfTime) as error:
+            kind = "TimeoutError" if isinstance(error, _OutOfTime) else type(error).__name__
+            raise DesignError(f"Design.derive: failed with {kind}: {error} (given {dict(values)!r})", "derive") from error
         if not isinstance(more, Mapping):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
         found = {str(name): as_python(value) for name, value in cast("Mapping[Any, Any]", more).items()}
@@ -435,23 +443,25 @@ class Design(Configuration):
 
     @contextmanager
     def _in_time(self) -> Generator[None]:
-        """Ends `derive` inside the block at the limit of a trial. Elsewhere, who runs a trial ends it; no other thread can be ended.
+        """Ends `derive` inside the block at the limit of a trial, if this is the main thread: no other one can be ended. What runs trials
+        ends those that take too long.
 
         Raises:
-            TimeoutError: If it has not returned then.
+            _OutOfTime: If it has not returned then.
         """
 
         def end(*_: object) -> None:
-            raise TimeoutError(f"it did not return within {self.limit:g} s, the limit of a trial")
+            raise _OutOfTime(f"it did not return within {self.limit:g} s, the limit of a trial")
 
         if self.derive is None or threading.current_thread() is not threading.main_thread():
             yield
             return
-        before, left = signal.signal(signal.SIGALRM, end), signal.setitimer(signal.ITIMER_REAL, min(self.limit, LONGEST_TIMER))
+        begin, before = time.monotonic(), signal.signal(signal.SIGALRM, end)
+        left, interval = signal.setitimer(signal.ITIMER_REAL, min(self.limit, LONGEST_TIMER), AGAIN)
         try:
             yield
         finally:
-            signal.setitimer(signal.ITIMER_REAL, *left)
+            signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - begin), 1e-3) if left else 0, interval)
             signal.signal(signal.SIGALRM, before)
 
     def table(self) -> Iterator[Trial]:

@@ -211,6 +211,11 @@ def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Compa
     """
     left, difference, unfinished = comparator.rest(), comparator.difference, 0
     after: list[str] = []
+    if comparator.went_on:
+        raise RecordingError(
+            f"the recording '{recorded.path}' cannot be compared: its program went on after the user interrupted it, and what it did then "
+            "cannot be repeated"
+        )
     if comparator.interrupted:
         after = [f"not checked: {_counted(left)} after that"] if left else []
         left = {}

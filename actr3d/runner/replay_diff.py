@@ -73,6 +73,8 @@ class Comparator:
         """Whether the recording ended before the replay did, which is allowed for an interrupted run (`open_end`)."""
         self.interrupted = False
         """Whether the recording ended where the user interrupted the program (`open_end`): what it did after that cannot be repeated."""
+        self.went_on = False
+        """Whether the program went on with another run after that."""
         self.difference: str | None = None
         self._unreadable: Exception | None = None
         """Why the recording can no longer be read."""
@@ -206,7 +208,11 @@ class Comparator:
         if self._unreadable is not None:
             raise self._unreadable
         things = {"event": self._events, "state": self._states, "answer": self._answers, "command": self._commands}
-        left = {kind: sum(1 for _ in more) for kind, more in things.items()}
+        left = dict.fromkeys(things, 0)
+        for kind, more in things.items():
+            for thing in more:
+                left[kind] += 1
+                self.went_on |= self.interrupted and isinstance(thing, TraceEvent) and thing.kind == "start"
         return {kind: count for kind, count in left.items() if count}
 
 

@@ -300,8 +300,8 @@ class Simulation:
             raise SimulationError("observers, listeners and `until` cannot step or change the simulation")
         if self.timeline.running:
             raise SimulationError(
-                "what an agent or a body does cannot run or change the simulation; an agent ends the run with self.stop(), and lets time "
-                "pass with yield"
+                "an agent or a body cannot run or change the simulation that runs it; an agent ends the run with self.stop(), and lets "
+                "time pass with yield"
             )
 
     # -- commands

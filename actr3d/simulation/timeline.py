@@ -144,7 +144,7 @@ class Timeline:
         """
         if self._lockstep is None:
             if self._beginning:
-                raise SimulationError("the agents are being made: what makes them cannot use the agents, or run or change the simulation")
+                raise SimulationError("a function that makes an agent cannot use the agents, or run or change the simulation")
             self._beginning = True
             try:
                 self._lockstep = self._begin()

@@ -235,7 +235,7 @@ export async function begin() {
 /** The end of a choice of files: those that cannot be opened, each with what its path must be. */
 export function UnusableModels() {
   if (unusable.value.length === 0) return null;
-  return html`<optgroup label="Cannot be opened under their names">${unusable.value.map(({ path, problem }) => html`<option key=${path} disabled title=${path}>${path}: ${problem}</option>`)}</optgroup>`;
+  return html`<optgroup label="Files with invalid names">${unusable.value.map(({ path, problem }) => html`<option key=${path} disabled title=${path}>${path}: ${problem}</option>`)}</optgroup>`;
 }
 
 export function ModelChoice() {

@@ -15,6 +15,8 @@ export function useRowInView(box, ids, chosen, shown, height) {
   rows.current = ids;
   const known = useRef(new Set()); // the chosen rows for which the list was scrolled
   const kept = useRef({ id: null, isInView: false });
+  const size = useRef(0); // the height of the list when it was last looked at [px]
+  const followed = useRef(null); // the shown run for which the list was scrolled
 
   /** Returns the lowest and the highest scroll position at which a row is whole in view; in a very low list, its top is. */
   function placesOf(id) {
@@ -36,20 +38,26 @@ export function useRowInView(box, ids, chosen, shown, height) {
   }
 
   useLayoutEffect(() => {
-    const added = [...chosen].filter((id) => !known.current.has(id) && ids.includes(id));
+    const listed = new Set(ids);
+    const added = [...chosen].filter((id) => !known.current.has(id) && listed.has(id));
     known.current = new Set([...known.current, ...added].filter((id) => chosen.has(id)));
     if (added.length > 0) show(added.find(isInView) ?? added[0]);
-    else if (kept.current.id === null && ids.includes(shown) && box.current.scrollTop === 0) show(shown);
+    else if (chosen.size === 0 && followed.current !== shown && listed.has(shown)) {
+      followed.current = shown;
+      if (kept.current.id === null ? box.current.scrollTop === 0 : kept.current.isInView) show(shown);
+    }
   });
 
   return {
     resized() {
       const { id, isInView: wasInView } = kept.current;
+      size.current = box.current.clientHeight;
       if (wasInView && rows.current.includes(id)) show(id);
     },
     scrolled() {
       const { id } = kept.current;
-      if (rows.current.includes(id)) kept.current = { id, isInView: isInView(id) };
+      const isResized = box.current.clientHeight !== size.current; // an event of an earlier scrolling: `resized` is called next
+      if (!isResized && rows.current.includes(id)) kept.current = { id, isInView: isInView(id) };
     },
   };
 }

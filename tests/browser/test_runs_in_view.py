@@ -80,6 +80,26 @@ def test_the_chosen_run_is_in_view_when_it_is_chosen_after_a_reload_and_when_the
     in_view(page, ids[2])  # of a file that was added
 
 
+def test_the_list_follows_the_shown_run_while_none_is_chosen(pages: Pages) -> None:
+    page = pages("doorway.py", width=853, height=533, tab="runs")
+    shows(page, "#status", "at its start")
+    ids = listed(page, 40)
+    page.reload()
+    shows(page, "#status", "at its start")
+    in_view(page, ids[-1])
+    show = (
+        "async (id) => { const { session } = await part('store.js'); session.value = { ...session.value, recording: id, recorded: null }; }"
+    )
+    page.evaluate(show, ids[5])
+    in_view(page, ids[5])
+    page.evaluate("document.querySelector('.runs-list').scrollTop = 30 * 44")
+    until(page, lambda: not page.evaluate(WHOLE, ids[5]))
+    drawn(page)
+    page.evaluate(show, ids[9])  # the user has scrolled away
+    drawn(page)
+    assert page.locator(".runs-list").evaluate("(list) => list.scrollTop") == 30 * 44
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_head_of_the_list_is_as_wide_as_the_list(pages: Pages, theme: str) -> None:
     page = pages("doorway.py", width=1280, height=800, theme=theme, tab="runs")

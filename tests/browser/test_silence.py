@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,9 +15,6 @@ from tests.helpers.page import PART, shows
 from tests.helpers.workbench_server import Served, served
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="no process can be stopped")
-
-SHOWN_WITHIN = 2.0
-"""The sign comes after about a second; on a busy machine a little later [s]."""
 
 
 @contextmanager
@@ -44,9 +40,7 @@ def test_a_click_that_the_workbench_does_not_answer_has_a_sign_until_it_does(bro
                 page.wait_for_timeout(1500)
                 expect(note).to_have_text("")  # nobody waits for anything
                 page.click(button)
-                began = time.monotonic()
-                expect(note).to_have_text("The workbench does not answer; what you asked for is done as soon as it does …")
-                assert time.monotonic() - began < SHOWN_WITHIN
+                expect(note).to_have_text("The workbench does not answer …")
                 expect(connection).to_have_text("no answer")
             expect(note).to_have_text("")
             expect(connection).to_have_text("connected")

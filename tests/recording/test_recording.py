@@ -118,7 +118,7 @@ def test_any_loss_of_items_stops_the_recording(error: BaseException, tmp_path: P
 
     recording = Recording(tmp_path / "run", {"kind": "simulation"})
     with monkeypatch.context() as patch:
-        patch.setattr(writer, "plain_to_json", raising)
+        patch.setattr(writer, "_item_to_json", raising)
         recording.event(TraceEvent(5, "top", "state", {"number": 1}))
         with pytest.raises(type(error)) if isinstance(error, KeyboardInterrupt) else nullcontext():
             recording._writer.flush()
@@ -253,7 +253,8 @@ def test_a_recording_that_is_taken_away_during_the_run_is_reported_as_that(how: 
     if how == "replaced":
         path.write_text("precious", encoding="utf-8")
     recording.event(TraceEvent(1, "agent", "output", {"text": "two"}))
-    message = f"cannot write the recording '{path}': it was deleted, moved or replaced during the run; if it was moved, look for it there"
+    gone = "it was deleted, moved or replaced during the run; if you moved it, its new place holds the run up to now"
+    message = f"cannot write the recording '{path}': {gone}"
     with pytest.raises(RecordingError, match=f"^{re.escape(message)}$"):
         recording.close()
     if how == "moved":

@@ -216,6 +216,21 @@ def test_a_program_that_was_interrupted_in_a_production_agrees_until_then(
     assert out.endswith(f"; the recording says that the run was interrupted at 0.15 s, which cannot be checked{note}\n")
 
 
+def test_a_program_that_went_on_after_it_was_interrupted_is_not_said_to_agree(
+    path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = "import os\nfrom actr3d.actr import *\nclass Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"
+    source += "    def stop_here(goal='a'):\n        if 'AGAIN' not in os.environ: raise KeyboardInterrupt\n        goal.clear()\n"
+    source += "for number in range(2):\n    try: Agent().run()\n    except KeyboardInterrupt:\n        if number: raise\n"
+    file = path.with_name("model.py")
+    file.write_text(source, encoding="utf-8")
+    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 130
+    monkeypatch.setenv("AGAIN", "1")
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert "cannot be compared: its program went on after the user interrupted it" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(("source", "failure"), [("def f(:", "model.py:1: invalid syntax"), ("1 / 0", "ZeroDivisionError")])
 def test_a_program_that_failed_before_its_first_event_fails_again(
     source: str, failure: str, path: Path, capsys: pytest.CaptureFixture[str]

@@ -291,14 +291,14 @@ def running(act: Callable[[Any], object]) -> Simulation:
 def test_an_agent_cannot_run_or_change_the_simulation_that_runs_it(method: str) -> None:
     simulation = running(lambda agent: eval(f"simulation.{method}", {"simulation": simulation}))
     simulation.command("walk", 0.5, body="walker")
-    with pytest.raises(SimulationError, match="what an agent or a body does cannot run or change the simulation"):
+    with pytest.raises(SimulationError, match="an agent or a body cannot run or change the simulation that runs it"):
         simulation.run(0.1)
 
 
 @pytest.mark.parametrize("use", ["agents", "run(1)"])
 def test_what_makes_an_agent_cannot_use_the_agents(use: str) -> None:
     simulation = Simulation(scene_of("walker"), {"walker": lambda: eval(f"simulation.{use}", {"simulation": simulation})}, seed=1)
-    with pytest.raises(SimulationError, match="the agents are being made"):
+    with pytest.raises(SimulationError, match="a function that makes an agent cannot use the agents"):
         simulation.run(0.1)
 
 

@@ -6,7 +6,6 @@ Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's act
 from __future__ import annotations
 
 import math
-from numbers import Real
 from random import Random
 from typing import Any, Final, Protocol, cast
 
@@ -255,14 +254,12 @@ def _check_reference(time: Any, baselevel: Any) -> None:
 
 
 def _amount(value: Any, name: str) -> Any:
-    """Returns what `memory.add` is given for a part of the activation; nan is a number here, about which a request warns.
+    """Returns what `memory.add` is given for a part of the activation; it may be nan, about which a request warns.
 
     Raises:
         ParameterError: If it is not a number.
     """
-    if not isinstance(value, Real):
-        raise ParameterError(f"memory.add: {name}: must be a number (got {value!r})")
-    return value
+    return checked_number(value, f"memory.add: {name}", infinite=True, nan=True)
 
 
 def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:

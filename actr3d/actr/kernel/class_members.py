@@ -89,10 +89,11 @@ def check_methods(kind: type) -> None:
     Raises:
         SchedulerError: If it has one.
     """
-    for name in sorted(RESERVED & vars(kind).keys()):
-        member: object = vars(kind)[name]
-        if _is_production(member) or (not callable(member) and not hasattr(type(member), "__get__")):
-            raise _reserved(kind, name)
+    for klass in filter(is_modellers, kind.__mro__):
+        for name in sorted(RESERVED & vars(klass).keys()):
+            member: object = vars(klass)[name]
+            if _is_production(member) or (not callable(member) and not hasattr(type(member), "__get__")):
+                raise _reserved(klass, name)
 
 
 def _is_production(member: object) -> bool:

@@ -143,7 +143,7 @@ class Model(TreeNode):
         if not any(name in inspect.signature(kind.__init__).parameters for kind in type(self).__mro__[:-1]):
             warn_modeller(
                 f"{type(self).__name__}.{name} was set to {traceable(before)!r}, but becomes {traceable(after)!r}, as its class says, "
-                "when the model starts; set it after the first run(0), or leave it out of the class"
+                "when the model starts; set it when it has started, or leave it out of the class"
             )
 
     def _warn_of_replacement(self, name: str, before: Any) -> None:

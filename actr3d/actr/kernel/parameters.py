@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import sys
 from collections.abc import Callable, Iterator
 from functools import cache, wraps
@@ -12,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Concatenate, ParamSpec, TypeVar, ca
 
 from annotated_types import Ge, Gt
 
-from actr3d.configuration import Infinite, checked, is_finite
+from actr3d.configuration import Infinite, checked
 from actr3d.errors import ConfigurationError, ParameterError, alternatives, did_you_mean
 from actr3d.warnings import warn_modeller
 
@@ -160,18 +161,23 @@ def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
     _check(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
 
 
-def checked_number(value: Any, where: str, *, infinite: bool = False) -> Any:
-    """Returns a number that a model gives; True and False count as 1 and 0.
+def checked_number(value: Any, where: str, *, infinite: bool = False, nan: bool = False) -> Any:
+    """Returns a number that a model gives, also one of another library; True and False count as 1 and 0.
 
     Args:
         value: The number.
         where: What it is, for the error.
         infinite: Whether it may be infinite.
+        nan: Whether it may be nan.
 
     Raises:
-        ParameterError: If it is not a number, is nan, or is infinite and may not be.
+        ParameterError: If it is not a number, or one that it may not be.
     """
-    if not isinstance(value, Real) or value != value or not (infinite or is_finite(value)):
+    try:
+        number = None if isinstance(value, (str, bytes)) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = None
+    if number is None or (not nan and math.isnan(number)) or (not infinite and math.isinf(number)):
         raise ParameterError(f"{where}: must be a {'' if infinite else 'finite '}number (got {value!r})")
     return value
 

@@ -19,9 +19,9 @@ from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Part, Plot, Section, Table
 from actr3d.experiment.report.reference_means import (
     ReferenceMeans,
+    cells_left_out,
     factors_of,
     fit_to,
-    left_out,
     matched,
     missing,
     ran_at,
@@ -191,7 +191,7 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, re
     if len(fit):
         note = "Agreement of the means of all cells that both have. A model must be compared with a baseline, too."
         found.append(Table(name="fit_to_people", title="Agreement with people", frame=fit, note=note, hidden=["beside"]))
-        found += _left_out(parts, reference)
+        found += _sentences_on_left_out(parts, reference)
         found.append(_matched_table(parts, reference, "means_beside_people", "Means beside those of people"))
     if without:
         found.append(f"No human data for: {', '.join(without)}.")
@@ -211,7 +211,7 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
         found.append(Caution(f"Not compared, because {other.label} has them in another unit: {', '.join(units)}."))
     if reference is not None and len(fit := fit_to(parts, reference)):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
-        found += _left_out(parts, reference)
+        found += _sentences_on_left_out(parts, reference)
         found.append(_matched_table(parts, reference, "means_beside_other", f"Means beside those of {other.label}"))
     else:
         found.append(Caution("The two experiments have no cell in common without failed trials: their means are not compared."))
@@ -239,12 +239,12 @@ def levels_compared(results: Results, other: Results) -> list[str | Caution]:
     return found
 
 
-def _left_out(parts: Sequence[Results], reference: ReferenceMeans) -> list[str]:
+def _sentences_on_left_out(parts: Sequence[Results], reference: ReferenceMeans) -> list[str]:
     """Returns sentences that name the conditions of the means beside that are not compared, of measures of which some are."""
     measures: dict[str, list[str]] = {}
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, reference, measure)
-        if len(cells) and (others := left_out(results, reference, measure, cells)):
+        if len(cells) and (others := cells_left_out(results, reference, measure, cells)):
             several = len({*results.groups, *(cell["group"] for cell in others if "group" in cell)}) > 1
             shown = [{name: level for name, level in cell.items() if several or name != "group"} for cell in others]
             measures.setdefault(_listed(shown), []).append(measure)
@@ -380,7 +380,7 @@ class Layout:
     @property
     def note(self) -> str:
         """What the note of a figure says of them."""
-        return f" Averaged over: {', '.join(self.averaged)}." if self.averaged else ""
+        return f" Averaged over: {', '.join(map(words, self.averaged))}." if self.averaged else ""
 
 
 def layout_of(results: Results) -> Layout | None:

@@ -209,7 +209,7 @@ def matched(results: Results, reference: ReferenceMeans, measure: str) -> Any:
     return without_failures(found, keys, [results, *([] if reference.results is None else [reference.results])])
 
 
-def left_out(results: Results, reference: ReferenceMeans, measure: str, cells: Any) -> list[Cell]:
+def cells_left_out(results: Results, reference: ReferenceMeans, measure: str, cells: Any) -> list[Cell]:
     """Returns the conditions of the means of a measure that are not compared: all but the cells that `matched` returned."""
     keys = ["group", *results.all_factors]
     both, beside = (
@@ -268,7 +268,7 @@ def fit_to(parts: Sequence[Results], reference: ReferenceMeans) -> Any:
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
             row = {"measure": measure, "unit": unit, "beside": reference.label, "cells": len(cells)}
-            row["left_out"] = len(left_out(results, reference, measure, cells))
+            row["left_out"] = len(cells_left_out(results, reference, measure, cells))
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
     return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr import Model
+from actr3d.actr import ACTR, Model
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning, SchedulerError
 from tests.helpers.model_trees import Ball
@@ -118,6 +118,15 @@ def test_a_production_cannot_have_the_name_of_a_method_that_every_model_needs(na
     text = f"from actr3d.actr import *\nclass Agent(ACTR):\n    goal = Buffer()\n    def {name}({parameters}):\n        goal.clear()\n"
     with pytest.raises(SchedulerError, match=rf"Agent\.{name}: the name '{name}' is reserved in every model; use another"):
         load_text(text, "agent.py")
+
+
+def test_a_production_of_a_mixin_cannot_have_the_name_of_a_method_either() -> None:
+    def explain(goal: Any = "a") -> None: ...
+
+    mixin = type("Mixin", (), {"explain": explain, "__module__": __name__})
+    for bases in ((ACTR, mixin), (mixin, ACTR)):
+        with pytest.raises(SchedulerError, match=r"Mixin\.explain: the name 'explain' is reserved in every model"):
+            type("Agent", bases, {})
 
 
 def test_a_class_may_override_the_methods_that_every_model_needs() -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import statistics
+from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
 import actr3d.actr as library
@@ -187,3 +189,11 @@ def test_a_reward_is_a_finite_number(value: Any) -> None:
     assert in_order(agent) == before
     agent.reward(True)
     assert in_order(agent) != before
+
+
+@pytest.mark.parametrize("value", [np.True_, np.array(1.0), np.int64(1), Fraction(1)])
+def test_a_reward_may_be_a_number_of_another_library(value: Any) -> None:
+    agent, plain = (steps(learning=PMNew(alpha=0.2)) for _ in range(2))
+    agent.reward(value)
+    plain.reward(1)
+    assert in_order(agent) == in_order(plain)
