@@ -160,7 +160,7 @@ SOURCE = "UPDATE facts SET value = replace(value, '{}', '{}') WHERE name = 'sour
         (no_run, "differs: state 1; recorded: tick 0 of top#0; now: tick 0 of top"),
         (SOURCE.format("one.run(0.3)\\nprint", "print"), "event "),
         ("UPDATE commands SET data = replace(data, '0.6', '0.5')", "differs: command 1; recorded: [1, 41, {"),
-        ("UPDATE answers SET data = replace(data, '\"x\": 0', '\"x\": 1')", "differs: answer 1; recorded: [1, "),
+        ("UPDATE answers SET data = replace(data, '\"x\":0', '\"x\":1')", "differs: answer 1; recorded: [1, "),
         ("INSERT INTO commands SELECT 2, run, 51, data, checksum FROM commands WHERE first = 1", "the recording holds 1 command more"),
     ],
 )
