@@ -202,16 +202,13 @@ def _count(text: str, most: int = MOST) -> int:
     return int(text)
 
 
-def _file(text: str) -> str:
-    if not text:
-        raise argparse.ArgumentTypeError("must be the name of a file (got '')")
-    return text
-
-
-def _folder(text: str) -> str:
+def _name(what: str, text: str) -> str:
     if not text:  # the value of a variable of the shell that is not set
-        raise argparse.ArgumentTypeError("must be the name of a folder (got '')")
+        raise argparse.ArgumentTypeError(f"must be the name of a {what} (got '')")
     return text
+
+
+_file, _folder = partial(_name, "file"), partial(_name, "folder")
 
 
 def _workers(text: str) -> int:

@@ -27,7 +27,7 @@ from actr3d.recording.opening import COMPANIONS
 from actr3d.recording.schema import COLUMNS, SCHEMA
 from actr3d.replacing import creating
 from actr3d.trace import TraceEvent
-from actr3d.values import escape_surrogates, plain_to_json
+from actr3d.values import plain_to_json
 
 FULL = "the disk is full"
 GONE = "it was deleted, moved or replaced during the run"
@@ -316,7 +316,7 @@ class Writer:
             last = self._delete(table, kept[table])
             if last is not None:
                 things = json.loads(last[2])[: kept[table] - last[0]]
-                self._insert(table, len(things), len(things), escape_surrogates(json.dumps(things, ensure_ascii=False)))
+                self._insert(table, len(things), len(things), _to_json(things, json.dumps))
         last = self._delete("states", kept["states"])
         if last is not None:
             first, _, data, marks, contacts, _ = last

@@ -3,7 +3,7 @@
 import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
 import { systemsOf } from "../inspector/agents.js";
-import { isTooLarge, literal } from "../parameters/values.js";
+import { isTooLarge, literal, TOO_LARGE } from "../parameters/values.js";
 import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
@@ -64,7 +64,7 @@ function read(field, text) {
   if (takes.includes("number")) {
     const value = text.trim() === "" ? null : Number(text) / unitOf(field)[1];
     const wrong = value === null ? required : !Number.isFinite(value);
-    return wrong ? { problem: `${name}: ${isTooLarge(text) ? "the number is too large" : "must be a number"} (got '${text}')` } : { value };
+    return wrong ? { problem: `${name}: ${isTooLarge(text) ? TOO_LARGE : "must be a number"} (got '${text}')` } : { value };
   }
   if (!takes.includes(" | ")) return { value: text };
   try {

@@ -5,7 +5,8 @@ export function written(value) {
   return value === null || value === undefined ? "" : String(value);
 }
 
-const TOO_LARGE = "the number is too large";
+/** What is wrong with a text for which `isTooLarge` is true. */
+export const TOO_LARGE = "the number is too large";
 
 /** Whether a text is a number beyond the largest that can be computed with, such as 1e400. */
 export function isTooLarge(text) {

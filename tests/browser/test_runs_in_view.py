@@ -46,14 +46,19 @@ def in_view(page: Page, name: str) -> None:
     until(page, lambda: page.evaluate(WHOLE, name))
 
 
-def test_the_chosen_run_is_in_view_when_it_is_chosen_after_a_reload_and_when_the_list_is_resized(pages: Pages) -> None:
+def reloaded(pages: Pages) -> tuple[Page, list[str]]:
+    """Returns a low page with many runs after it was reloaded, and their ids; the run that is shown is the last of the list."""
     page = pages("doorway.py", width=853, height=533, tab="runs")
     shows(page, "#status", "at its start")
     ids = listed(page, 40)
     page.reload()
     shows(page, "#status", "at its start")
-    in_view(page, ids[-1])  # the run that is shown, though it is the last of the list
+    in_view(page, ids[-1])
+    return page, ids
 
+
+def test_the_chosen_run_is_in_view_when_it_is_chosen_after_a_reload_and_when_the_list_is_resized(pages: Pages) -> None:
+    page, ids = reloaded(pages)
     page.evaluate("document.querySelector('.runs-list').scrollTop = 0")
     expect(page.locator(f"[data-run='{ids[0]}']")).to_be_visible()
     lowest: str = page.evaluate(LOWEST)
@@ -81,12 +86,7 @@ def test_the_chosen_run_is_in_view_when_it_is_chosen_after_a_reload_and_when_the
 
 
 def test_the_list_follows_the_shown_run_while_none_is_chosen(pages: Pages) -> None:
-    page = pages("doorway.py", width=853, height=533, tab="runs")
-    shows(page, "#status", "at its start")
-    ids = listed(page, 40)
-    page.reload()
-    shows(page, "#status", "at its start")
-    in_view(page, ids[-1])
+    page, ids = reloaded(pages)
     show = (
         "async (id) => { const { session } = await part('store.js'); session.value = { ...session.value, recording: id, recorded: null }; }"
     )

@@ -46,10 +46,15 @@ def path_(tmp_path: Path) -> Path:
     return tmp_path / "run"
 
 
-def record(path: Path, first: str = "pass", last: str = "pass") -> None:
+def run_recorded(path: Path, source: str) -> int:
+    """Runs a program and records it; returns the exit code."""
     file = path.with_name("model.py")
-    file.write_text(PROGRAM.format(first=first, last=last), encoding="utf-8")
-    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 0
+    file.write_text(source, encoding="utf-8")
+    return main(["run", str(file), "--seed", "1", "--record", str(path)])
+
+
+def record(path: Path, first: str = "pass", last: str = "pass") -> None:
+    assert run_recorded(path, PROGRAM.format(first=first, last=last)) == 0
 
 
 @pytest.mark.daily(5)
@@ -169,9 +174,7 @@ print("joined")
 
 
 def test_a_program_that_runs_its_model_in_a_thread_is_compared(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = path.with_name("model.py")
-    file.write_text(THREADS, encoding="utf-8")
-    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 0
+    assert run_recorded(path, THREADS) == 0
     with Recorded(path) as recorded:
         count = recorded.event_count
     assert count > 10
@@ -205,9 +208,7 @@ def test_a_program_that_was_interrupted_in_a_production_agrees_until_then(
     source = source.replace("count ?n!4", "count ?n!4!2")
     source = source.replace("again = ", "def stop_here():\n    if not again: raise KeyboardInterrupt\nagain = ")
     source = source.replace("Counter().run()\n", f"try:\n    Counter().run()\nfinally:\n    if not again: {then}\n")
-    file = path.with_name("model.py")
-    file.write_text(source, encoding="utf-8")
-    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 130
+    assert run_recorded(path, source) == 130
     monkeypatch.setenv("AGAIN", "1")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 0
@@ -222,9 +223,7 @@ def test_a_program_that_went_on_after_it_was_interrupted_is_not_said_to_agree(
     source = "import os\nfrom actr3d.actr import *\nclass Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"
     source += "    def stop_here(goal='a'):\n        if 'AGAIN' not in os.environ: raise KeyboardInterrupt\n        goal.clear()\n"
     source += "for number in range(2):\n    try: Agent().run()\n    except KeyboardInterrupt:\n        if number: raise\n"
-    file = path.with_name("model.py")
-    file.write_text(source, encoding="utf-8")
-    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 130
+    assert run_recorded(path, source) == 130
     monkeypatch.setenv("AGAIN", "1")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
@@ -235,9 +234,7 @@ def test_a_program_that_went_on_after_it_was_interrupted_is_not_said_to_agree(
 def test_a_program_that_failed_before_its_first_event_fails_again(
     source: str, failure: str, path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = path.with_name("model.py")
-    file.write_text(source, encoding="utf-8")
-    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
+    assert run_recorded(path, source) == 1
     assert main(["replay", str(path)]) == 0
     out = capsys.readouterr().out
     assert out.startswith("agrees up to the end of the recording: 0 events; the run failed after 0 s (")

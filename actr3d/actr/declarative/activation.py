@@ -14,7 +14,7 @@ from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.noise import logistic_noise
-from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, checked_number, named_parameters
+from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, check_number, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ChunkError, ParameterError
 
@@ -248,18 +248,18 @@ def _check_reference(time: Any, baselevel: Any) -> None:
         ParameterError: If the time is not a finite number, or the base level not a number.
     """
     if time != 0:
-        checked_number(time, "memory.add: time")
+        check_number(time, "memory.add: time")
     if baselevel is not None and baselevel != "calculate":
-        _amount(baselevel, "baselevel")
+        _check_amount(baselevel, "baselevel")
 
 
-def _amount(value: Any, name: str) -> Any:
-    """Returns what `memory.add` is given for a part of the activation; it may be nan, about which a request warns.
+def _check_amount(value: Any, name: str) -> None:
+    """Checks what `memory.add` is given for a part of the activation; it may be nan, about which a request warns.
 
     Raises:
         ParameterError: If it is not a number.
     """
-    return checked_number(value, f"memory.add: {name}", infinite=True, nan=True)
+    check_number(value, f"memory.add: {name}", infinite=True, nan=True)
 
 
 def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
@@ -299,10 +299,13 @@ class DMFixed(MemorySubModule):
         self.default = default
 
     def create(self, chunk: Any, fixed: float | None = None, **keys: Any) -> None:
-        chunk.fixed = self.default if fixed is None else _amount(fixed, "fixed")
+        if fixed is not None:
+            _check_amount(fixed, "fixed")
+        chunk.fixed = self.default if fixed is None else fixed
 
     def merge(self, chunk: Any, fixed: float = 0, **keys: Any) -> None:
-        chunk.fixed += _amount(fixed, "fixed")
+        _check_amount(fixed, "fixed")
+        chunk.fixed += fixed
 
     def activation(self, chunk: Any) -> float:
         return getattr(chunk, "fixed", self.default)

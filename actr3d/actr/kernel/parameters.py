@@ -161,8 +161,8 @@ def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
     _check(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
 
 
-def checked_number(value: Any, where: str, *, infinite: bool = False, nan: bool = False) -> Any:
-    """Returns a number that a model gives, also one of another library; True and False count as 1 and 0.
+def check_number(value: Any, where: str, *, infinite: bool = False, nan: bool = False) -> None:
+    """Checks a number that a model gives; it may be of another library, and True and False count as 1 and 0.
 
     Args:
         value: The number.
@@ -179,7 +179,6 @@ def checked_number(value: Any, where: str, *, infinite: bool = False, nan: bool 
         number = None
     if number is None or (not nan and math.isnan(number)) or (not infinite and math.isinf(number)):
         raise ParameterError(f"{where}: must be a {'' if infinite else 'finite '}number (got {value!r})")
-    return value
 
 
 def check_attribute(kind: type, name: str, value: Any) -> None:

@@ -9,7 +9,7 @@ from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.events import AGAIN, Event
 from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import Extended, NotNegative, checked_number
+from actr3d.actr.kernel.parameters import Extended, NotNegative, check_number
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, trace_utility_parts
@@ -37,7 +37,7 @@ class ACTR(ProductionSystem):
     _by_utility = True
     production_time_sd: NotNegative | None = None
     """The standard deviation of the firing time [s]; None for no noise."""
-    production_threshold: Extended | Callable[[], float] | None = None
+    production_threshold: Extended | Callable[[], float | None] | None = None
     """The minimum utility for firing: a number, a function without arguments, or None for no minimum."""
 
     _weighed: Weighed | None = None
@@ -105,9 +105,9 @@ class ACTR(ProductionSystem):
         best = max(utilities)
         threshold = self.production_threshold
         if callable(threshold):
-            computed: Any = threshold()
-            where = f"{type(self).__name__}.production_threshold()"
-            threshold = None if computed is None else checked_number(computed, where, infinite=True)
+            threshold = threshold()
+            if threshold is not None:
+                check_number(threshold, f"{type(self).__name__}.production_threshold()", infinite=True)
         weighed = self.__dict__["_weighed"] = Weighed(matching, utilities, parts, threshold)
         if trace is not None and trace.all:
             self._trace_utilities(weighed, trace)
@@ -175,7 +175,8 @@ class ACTR(ProductionSystem):
     def _duration(self) -> float:
         time = self.production_time
         if callable(time):
-            time = checked_number(time(), f"{type(self).__name__}.production_time()")
+            time = time()
+            check_number(time, f"{type(self).__name__}.production_time()")
         if self.production_time_sd is not None:
             time += self.random.gauss(0, self.production_time_sd)
         return max(0, time - self.production_match_delay)
@@ -206,7 +207,7 @@ class ACTR(ProductionSystem):
         Raises:
             ParameterError: If it is not a finite number.
         """
-        checked_number(value, f"{type(self).__name__}.reward(value)")
+        check_number(value, f"{type(self).__name__}.reward(value)")
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "reward", {"value": value})

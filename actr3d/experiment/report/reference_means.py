@@ -267,8 +267,8 @@ def fit_to(parts: Sequence[Results], reference: ReferenceMeans) -> Any:
             rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
-            row = {"measure": measure, "unit": unit, "beside": reference.label, "cells": len(cells)}
-            row["left_out"] = len(cells_left_out(results, reference, measure, cells))
+            others = len(cells_left_out(results, reference, measure, cells))
+            row = {"measure": measure, "unit": unit, "beside": reference.label, "cells": len(cells), "left_out": others}
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
     return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])
 
