@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from numbers import Integral, Real
 from operator import ge, gt, le, lt
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -50,8 +51,8 @@ class Configuration:
 
     A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds are part of its type, such as
     `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MinLen`); its unit and source are in the
-    docstring below it. Whole numbers are accepted for `float`; NaN is rejected, and infinities are, unless
-    the type is marked `Infinite()`.
+    docstring below it. Whole numbers are accepted for `float`, and the numbers of other libraries, such as numpy, count as Python's;
+    NaN is rejected, and infinities are, unless the type is marked `Infinite()`.
     """
 
     def __post_init__(self) -> None:
@@ -100,8 +101,8 @@ def checked(value: Any, declared: Any, where: str) -> Any:
     origin = get_origin(declared)
     if origin is Annotated:
         inner, *bounds = get_args(declared)
-        endless = isinstance(value, float) and math.isinf(value) and any(isinstance(bound, Infinite) for bound in bounds)
-        found = value if endless else checked(value, inner, where)
+        endless = isinstance(value, Real) and abs(value) == math.inf and any(isinstance(bound, Infinite) for bound in bounds)
+        found = float(value) if endless else checked(value, inner, where)
         for bound in bounds:
             check_bound(bound, found, where)
         return found
@@ -122,13 +123,13 @@ def _plain(value: Any, declared: Any, where: str) -> Any:
     if declared is Any or getattr(declared, "_is_protocol", False):  # it says what an object can do, which is not checked
         return value
     if declared is float:
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
+        if not isinstance(value, bool) and isinstance(value, Real):
             if is_finite(value):
                 return float(value)
             raise ConfigurationError(f"{where}: must be a finite number (got {value!r})")
     elif declared is int:
-        if isinstance(value, int) and not isinstance(value, bool):
-            return value
+        if not isinstance(value, bool) and isinstance(value, Integral):
+            return int(value)
     elif isinstance(declared, type) and isinstance(value, declared):
         return value
     names = {float: "a number", int: "a whole number", str: "text", bool: "True or False"}

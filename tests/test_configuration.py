@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import FrozenInstanceError, dataclass
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Le, Lt, MinLen
 
@@ -72,3 +73,11 @@ def test_names_that_are_not_fields_are_refused() -> None:
     assert Lamp.from_mapping({"power": 20}) == Lamp(power=20.0)
     with pytest.raises(ConfigurationError, match="Lamp has no field 'powr'; did you mean 'power'"):
         Lamp.from_mapping({"powr": 20})
+
+
+def test_numbers_of_numpy_become_those_of_python() -> None:
+    lamp = Lamp(power=np.float32(0.5), bulbs=np.int64(2), position=np.arange(2), life=np.float32("inf"))  # pyright: ignore[reportArgumentType]
+    assert lamp == Lamp(power=0.5, bulbs=2, position=(0.0, 1.0), life=float("inf"))
+    assert [type(value) for value in (lamp.power, lamp.bulbs, *lamp.position, lamp.life)] == [float, int, float, float, float]
+    with pytest.raises(ConfigurationError, match=r"Lamp\.bulbs: must be a whole number \(got np\.float64\(2\.0\)\)"):
+        Lamp(bulbs=np.float64(2))  # pyright: ignore[reportArgumentType]
