@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Never
 
 import mujoco
 import numpy as np
@@ -66,6 +66,9 @@ class Physics:
         """Whether an observer is being called now, who must leave the world unchanged."""
         self.renderer: Any = None
         """Draws pictures; None before the first picture."""
+
+    def __reduce__(self) -> Never:
+        raise TypeError("a body, or another part of a World, cannot be copied alone; copy the World")
 
     @property
     def time(self) -> int:
