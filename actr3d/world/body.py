@@ -223,7 +223,7 @@ class Body:
 
     def _read(self, word: str, values: tuple[Any, ...], noise: StandardDeviation, options: dict[str, Any]) -> Any:
         """Returns what `get` does; the reading may change what the agent senses later."""
-        reading = checked_function(word, self._sensors, self.name, "sensor")(self, *values, **options)
+        reading = _without_arrays(checked_function(word, self._sensors, self.name, "sensor")(self, *values, **options))
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
 
@@ -462,6 +462,19 @@ class Body:
             return int(getattr(self.physics.mj_model, kind)(name).id)
         except KeyError as error:
             raise WorldError(f"body '{self.name}': the compiled model has no {kind} '{name}'") from error
+
+
+def _without_arrays(reading: Any) -> Any:
+    """Returns a reading with tuples and numbers of Python instead of those of numpy: an array of MuJoCo changes with the next step."""
+    if isinstance(reading, np.ndarray) and reading.ndim:
+        return tuple(map(_without_arrays, cast("Any", reading)))
+    if isinstance(reading, (np.ndarray, np.generic)):
+        return cast("Any", reading).item()
+    if type(reading) is dict:
+        return {key: _without_arrays(item) for key, item in cast("dict[Any, Any]", reading).items()}
+    if type(reading) in (tuple, list):
+        return type(reading)(map(_without_arrays, reading))
+    return reading
 
 
 def _named(kind: str, names: list[str]) -> list[str]:
