@@ -354,6 +354,11 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("rotate", ("torso_jaw",), r"walker has no joint 'torso_jaw'; did you mean 'torso_yaw'\?"),
         ("rotate", ("torso",), "'torso' has several joints; give the axis: yaw, pitch, roll"),
         ("rotate", ("torso", "yew"), r"walker: torso has no axis 'yew'; did you mean 'yaw'\?"),
+        (
+            "rotate",
+            ("torso_yaw", 30),
+            r"walker: 'torso_yaw' is a joint, and only a part takes an axis \(got 30\); give an angle by name: angle=20",
+        ),
         ("rotate", ("tors", "yaw"), r"no jointed part 'tors'; did you mean 'torso'\?"),
         ("rotate", ("torso", "yaw", "far"), r"rotate: angle: must be a number \(got 'far'\)"),
         ("rotate_torso", (10, 0), r"rotate_torso: speed: must be > 0 to go to an angle \(got 0\)"),
