@@ -544,6 +544,21 @@ def test_an_imported_arm_is_known_and_moved() -> None:
     assert {"shoulder", "elbow", "wrist", "grip"} <= motor.parent.posture.chunk.keys()
 
 
+@pytest.mark.parametrize("name", ["width", "posture"])
+def test_a_joint_with_the_name_of_another_slot_of_postures_is_refused(name: str) -> None:
+    arm = ImportedBody(name="arm", text=ARM.replace('"elbow"', f'"{name}"'))
+    with pytest.raises(WorldError, match=f"arm: the joint '{name}' has the name of another slot of postures; rename it"):
+        moving(body=arm)
+
+
+@pytest.mark.parametrize("name", ["left elbow", "left/elbow", "left-elbow", "1"])
+def test_joints_that_no_pattern_can_name_are_warned_of(name: str) -> None:
+    arm = ImportedBody(name="arm", text=ARM.replace('"elbow"', f'"{name}"'))
+    with pytest.warns(ModelWarning, match=f"arm: patterns cannot name the joints '{name}'; to match them, rename them"):
+        simulation, motor = moving(body=arm)
+    during(simulation, lambda: motor.rotate(name, angle=10))
+
+
 def test_a_joint_that_slides_needs_a_speed() -> None:
     _, motor = moving(body=ImportedBody(name="arm", text=ARM))
     with pytest.raises(WorldError, match=r"joint 'grip' slides; give its speed \[m/s\]"):
