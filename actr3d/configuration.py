@@ -46,6 +46,10 @@ class Infinite:
     """Marks the type of a number that may be infinite: `Annotated[float, Infinite()]`."""
 
 
+class InRadians:
+    """Marks the type of an angle [rad]: the error of one that is too great asks whether it is in degrees."""
+
+
 class Configuration:
     """Checks the fields of a frozen dataclass against their declared types and bounds.
 
@@ -103,8 +107,9 @@ def checked(value: Any, declared: Any, where: str) -> Any:
         inner, *bounds = get_args(declared)
         endless = isinstance(value, Real) and abs(value) == math.inf and any(isinstance(bound, Infinite) for bound in bounds)
         found = float(value) if endless else checked(value, inner, where)
+        degrees = isinstance(found, float) and abs(found) > math.pi and any(isinstance(bound, InRadians) for bound in bounds)
         for bound in bounds:
-            check_bound(bound, found, where)
+            check_bound(bound, found, where, f"; did you mean {found:g} degrees, math.radians({found:g})?" if degrees else "")
         return found
     if origin in (Union, UnionType):
         return _one_of(value, get_args(declared), where)
@@ -190,8 +195,8 @@ def bound_words(bound: object) -> str:
     return words.format(getattr(bound, attribute))
 
 
-def check_bound(bound: object, value: Any, where: str) -> None:
-    """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored.
+def check_bound(bound: object, value: Any, where: str, hint: str = "") -> None:
+    """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored. The error ends with the hint.
 
     Raises:
         ConfigurationError: If the value is out of bounds.
@@ -200,4 +205,4 @@ def check_bound(bound: object, value: Any, where: str) -> None:
         return
     attribute, _, fits = _BOUNDS[type(bound)]
     if not fits(value, getattr(bound, attribute)):
-        raise ConfigurationError(f"{where}: must be {bound_words(bound)} (got {value!r})")
+        raise ConfigurationError(f"{where}: must be {bound_words(bound)} (got {value!r}){hint}")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Le, Lt, MinLen
 
-from actr3d.configuration import Configuration, Infinite
+from actr3d.configuration import Configuration, Infinite, InRadians
 from actr3d.errors import ConfigurationError
 
 
@@ -81,3 +81,15 @@ def test_numbers_of_numpy_become_those_of_python() -> None:
     assert [type(value) for value in (lamp.power, lamp.bulbs, *lamp.position, lamp.life)] == [float, int, float, float, float]
     with pytest.raises(ConfigurationError, match=r"Lamp\.bulbs: must be a whole number \(got np\.float64\(2\.0\)\)"):
         Lamp(bulbs=np.float64(2))  # pyright: ignore[reportArgumentType]
+
+
+def test_an_angle_that_is_too_great_may_be_in_degrees() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Turn(Configuration):
+        angle: Annotated[float, Ge(-7), Le(7), InRadians()] = 0.0
+
+    with pytest.raises(
+        ConfigurationError, match=r"Turn\.angle: must be <= 7 \(got 90\.0\); did you mean 90 degrees, math\.radians\(90\)\?"
+    ):
+        Turn(angle=90)
+    assert Turn(angle=6).angle == 6.0
