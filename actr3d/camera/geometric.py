@@ -93,8 +93,9 @@ class GeometricCamera:
             CameraError: If the poses were not computed, are not finite, or belong to another model.
             ConfigurationError: If it is no `MjData`, or the heading is not a number.
         """
-        checked(mj_data, MjData, "GeometricCamera.look: mj_data")
-        heading = checked(heading, float | None, "GeometricCamera.look: heading")
+        if type(mj_data) is not MjData or type(heading) is not float or not math.isfinite(heading):  # the checks take longer
+            checked(mj_data, MjData, "GeometricCamera.look: mj_data")
+            heading = checked(heading, float | None, "GeometricCamera.look: heading")
         if len(mj_data.geom_xpos) != len(self._objects):
             got = len(mj_data.geom_xpos)
             raise CameraError(f"GeometricCamera.look: mj_data belongs to another model: {got} geoms, not {len(self._objects)}")

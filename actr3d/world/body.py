@@ -14,6 +14,7 @@ from mujoco import mjtJoint, mjtObj
 from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, WorldError, alternatives
+from actr3d.values import BASIC
 from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
@@ -466,14 +467,13 @@ class Body:
 
 def _without_arrays(reading: Any) -> Any:
     """Returns a reading with tuples and numbers of Python instead of those of numpy: an array of MuJoCo changes with the next step."""
-    if isinstance(reading, np.ndarray) and reading.ndim:
-        return tuple(map(_without_arrays, cast("Any", reading)))
-    if isinstance(reading, (np.ndarray, np.generic)):
-        return cast("Any", reading).item()
-    if type(reading) is dict:
-        return {key: _without_arrays(item) for key, item in cast("dict[Any, Any]", reading).items()}
-    if type(reading) in (tuple, list):
-        return type(reading)(map(_without_arrays, reading))
+    kind: Any = type(reading)
+    if kind is dict:
+        return {key: item if type(item) in BASIC else _without_arrays(item) for key, item in reading.items()}
+    if kind is tuple or kind is list:
+        return kind([item if type(item) in BASIC else _without_arrays(item) for item in reading])
+    if issubclass(kind, (np.ndarray, np.generic)):
+        return tuple(map(_without_arrays, reading)) if reading.ndim else reading.item()
     return reading
 
 
