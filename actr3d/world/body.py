@@ -467,11 +467,11 @@ class Body:
 
 def _without_arrays(reading: Any) -> Any:
     """Returns a reading with tuples and numbers of Python instead of those of numpy: an array of MuJoCo changes with the next step."""
-    kind: Any = type(reading)
+    kind = cast("type[Any]", type(reading))
     if kind is dict:
         return {key: item if type(item) in BASIC else _without_arrays(item) for key, item in reading.items()}
     if kind is tuple or kind is list:
-        return kind([item if type(item) in BASIC else _without_arrays(item) for item in reading])
+        return cast("Any", kind)([item if type(item) in BASIC else _without_arrays(item) for item in reading])
     if issubclass(kind, (np.ndarray, np.generic)):
         return tuple(map(_without_arrays, reading)) if reading.ndim else reading.item()
     return reading
