@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from numbers import Integral, Real
 from operator import ge, gt, le, lt
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -45,13 +46,17 @@ class Infinite:
     """Marks the type of a number that may be infinite: `Annotated[float, Infinite()]`."""
 
 
+class InRadians:
+    """Marks the type of an angle [rad]: the error of one that is too great asks whether it is in degrees."""
+
+
 class Configuration:
     """Checks the fields of a frozen dataclass against their declared types and bounds.
 
     A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds are part of its type, such as
     `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MinLen`); its unit and source are in the
-    docstring below it. Whole numbers are accepted for `float`; NaN is rejected, and infinities are, unless
-    the type is marked `Infinite()`.
+    docstring below it. Whole numbers are accepted for `float`, and the numbers of other libraries, such as numpy, count as Python's;
+    NaN is rejected, and infinities are, unless the type is marked `Infinite()`.
     """
 
     def __post_init__(self) -> None:
@@ -100,10 +105,11 @@ def checked(value: Any, declared: Any, where: str) -> Any:
     origin = get_origin(declared)
     if origin is Annotated:
         inner, *bounds = get_args(declared)
-        endless = isinstance(value, float) and math.isinf(value) and any(isinstance(bound, Infinite) for bound in bounds)
-        found = value if endless else checked(value, inner, where)
+        endless = isinstance(value, Real) and abs(value) == math.inf and any(isinstance(bound, Infinite) for bound in bounds)
+        found = float(value) if endless else checked(value, inner, where)
+        degrees = isinstance(found, float) and abs(found) > math.pi and any(isinstance(bound, InRadians) for bound in bounds)
         for bound in bounds:
-            check_bound(bound, found, where)
+            check_bound(bound, found, where, f"; did you mean {found:g} degrees, math.radians({found:g})?" if degrees else "")
         return found
     if origin in (Union, UnionType):
         return _one_of(value, get_args(declared), where)
@@ -122,13 +128,13 @@ def _plain(value: Any, declared: Any, where: str) -> Any:
     if declared is Any or getattr(declared, "_is_protocol", False):  # it says what an object can do, which is not checked
         return value
     if declared is float:
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
+        if not isinstance(value, bool) and isinstance(value, Real):
             if is_finite(value):
                 return float(value)
             raise ConfigurationError(f"{where}: must be a finite number (got {value!r})")
     elif declared is int:
-        if isinstance(value, int) and not isinstance(value, bool):
-            return value
+        if not isinstance(value, bool) and isinstance(value, Integral):
+            return int(value)
     elif isinstance(declared, type) and isinstance(value, declared):
         return value
     names = {float: "a number", int: "a whole number", str: "text", bool: "True or False"}
@@ -189,8 +195,8 @@ def bound_words(bound: object) -> str:
     return words.format(getattr(bound, attribute))
 
 
-def check_bound(bound: object, value: Any, where: str) -> None:
-    """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored.
+def check_bound(bound: object, value: Any, where: str, hint: str = "") -> None:
+    """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored. The error ends with the hint.
 
     Raises:
         ConfigurationError: If the value is out of bounds.
@@ -199,4 +205,4 @@ def check_bound(bound: object, value: Any, where: str) -> None:
         return
     attribute, _, fits = _BOUNDS[type(bound)]
     if not fits(value, getattr(bound, attribute)):
-        raise ConfigurationError(f"{where}: must be {bound_words(bound)} (got {value!r})")
+        raise ConfigurationError(f"{where}: must be {bound_words(bound)} (got {value!r}){hint}")

@@ -36,12 +36,13 @@ class Registry(dict[str, T], Generic[T]):
         Args:
             name: The name.
             thing: The thing.
-            module: The name of the module that defines it; None if the thing is a class or function, which knows that.
+            module: The name of the module that defines it; None if the thing is a class or function, which knows that, unless it was made
+                by `exec` without a `__name__`.
 
         Raises:
             ValueError: If another thing has this name.
         """
-        origin = (lasting_name(module or thing.__module__), getattr(thing, "__qualname__", name))
+        origin = (lasting_name(module or thing.__module__ or ""), getattr(thing, "__qualname__", name))
         known = self._origins.get(name, origin) if name in self else origin
         if known != origin and not _of_different_texts(known[0], origin[0]):
             raise ValueError(f"{self.what} '{name}' is defined twice: {'.'.join(known)} and {'.'.join(origin)}")

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import FrozenInstanceError, dataclass
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Le, Lt, MinLen
 
-from actr3d.configuration import Configuration, Infinite
+from actr3d.configuration import Configuration, Infinite, InRadians
 from actr3d.errors import ConfigurationError
 
 
@@ -72,3 +73,23 @@ def test_names_that_are_not_fields_are_refused() -> None:
     assert Lamp.from_mapping({"power": 20}) == Lamp(power=20.0)
     with pytest.raises(ConfigurationError, match="Lamp has no field 'powr'; did you mean 'power'"):
         Lamp.from_mapping({"powr": 20})
+
+
+def test_numbers_of_numpy_become_those_of_python() -> None:
+    lamp = Lamp(power=np.float32(0.5), bulbs=np.int64(2), position=np.arange(2), life=np.float32("inf"))  # pyright: ignore[reportArgumentType]
+    assert lamp == Lamp(power=0.5, bulbs=2, position=(0.0, 1.0), life=float("inf"))
+    assert [type(value) for value in (lamp.power, lamp.bulbs, *lamp.position, lamp.life)] == [float, int, float, float, float]
+    with pytest.raises(ConfigurationError, match=r"Lamp\.bulbs: must be a whole number \(got np\.float64\(2\.0\)\)"):
+        Lamp(bulbs=np.float64(2))  # pyright: ignore[reportArgumentType]
+
+
+def test_an_angle_that_is_too_great_may_be_in_degrees() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Turn(Configuration):
+        angle: Annotated[float, Ge(-7), Le(7), InRadians()] = 0.0
+
+    with pytest.raises(
+        ConfigurationError, match=r"Turn\.angle: must be <= 7 \(got 90\.0\); did you mean 90 degrees, math\.radians\(90\)\?"
+    ):
+        Turn(angle=90)
+    assert Turn(angle=6).angle == 6.0

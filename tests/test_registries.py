@@ -135,6 +135,25 @@ def test_a_sensor_or_an_actuator_of_the_library_is_not_replaced_and_the_same_may
         assert World(Scene(parts=(Car(),))).bodies["car"].get("height") == answer
 
 
+@pytest.mark.usefixtures("registered")
+def test_code_without_the_name_of_a_module_can_define_things() -> None:
+    text = """
+from actr3d.vision import Feature, detector
+from actr3d.world import sensor
+class Glow(Feature): pass
+detector(Glow)(lambda view: ())
+@sensor
+def glow(body): return 1
+"""
+    try:
+        for _ in range(2):
+            exec(text, {})
+        assert World(Scene(parts=(Car(),))).bodies["car"].get("glow") == 1
+        assert DETECTORS["glow"].finds.called() == "glow"
+    finally:
+        DETECTORS.pop("glow", None)
+
+
 OWN_THINGS = '''
 from actr3d.actr import *
 from actr3d.actr.modules import module

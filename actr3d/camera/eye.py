@@ -39,8 +39,10 @@ class Eye:
             known = [known for known in names if known]
             there = f"; there are: {', '.join(known)}" if known else f"; this model has no named {kind}"
             raise CameraError(f"GeometricCamera: no {kind} {name!r}{did_you_mean(str(name), known) or there}")
-        self._kind = kind
-        self._name = name
+        self.kind: Kind = kind
+        """What it is."""
+        self.name = name
+        """Its name in the model."""
         self._id = names.index(name)
         bodies = {"camera": mj_model.cam_bodyid, "site": mj_model.site_bodyid, "body": range(mj_model.nbody)}
         self.body = int(bodies[kind][self._id])
@@ -57,19 +59,19 @@ class Eye:
         x, y, z = numbers[0::3], numbers[1::3], numbers[2::3]
         length = sum(part * part for part in numbers)
         if not math.isfinite(length + sum(at)):
-            raise CameraError(f"GeometricCamera: the pose of the {self._kind} '{self._name}' is not a number; did the physics diverge?")
+            raise CameraError(f"GeometricCamera: the pose of the {self.kind} '{self.name}' is not a number; did the physics diverge?")
         if abs(length - 3.0) > 1e-6:
             raise CameraError(
-                f"GeometricCamera: the pose of the {self._kind} '{self._name}' was not computed; "
+                f"GeometricCamera: the pose of the {self.kind} '{self.name}' was not computed; "
                 "call mujoco.mj_forward, or mj_kinematics, mj_comPos and mj_camlight, before looking"
             )
-        if self._kind == "camera":
+        if self.kind == "camera":
             return np.array((x, y, [-part for part in z], at))
         return np.array(([-part for part in y], z, x, at))
 
     def _pose(self, mj_data: MjData) -> tuple[Any, Any]:
-        if self._kind == "camera":
+        if self.kind == "camera":
             return mj_data.cam_xpos[self._id], mj_data.cam_xmat[self._id]
-        if self._kind == "site":
+        if self.kind == "site":
             return mj_data.site_xpos[self._id], mj_data.site_xmat[self._id]
         return mj_data.xpos[self._id], mj_data.xmat[self._id]

@@ -18,6 +18,7 @@ from actr3d.camera.kernel.upper_envelope import room_for
 from actr3d.camera.parameters import CameraParameters, optics_of
 from actr3d.camera.topology import geoms_of, objects_of, topology_of
 from actr3d.camera.view import View
+from actr3d.configuration import checked
 from actr3d.errors import CameraError
 from actr3d.warnings import warn_modeller
 from actr3d.world.frames import upright_axes
@@ -32,7 +33,7 @@ class GeometricCamera:
     (sizes, colours, heights, poses) take effect at the next look; only the list of geoms and their types is read once. The sensor `view`
     looks again after a step, or after `World.changed`.
 
-    A camera is not thread-safe.
+    A camera is not thread-safe. A copy has the same labels; one that is deep, or was pickled, has its own copy of the model, too.
     """
 
     def __init__(
@@ -57,8 +58,11 @@ class GeometricCamera:
 
         Raises:
             CameraError: If there is no such eye, or if `background` names no geom.
+            ConfigurationError: If model or parameters have another type.
             ModelWarning: (a warning) Names flexes and skins, which are not seen.
         """
+        checked(mj_model, MjModel, "GeometricCamera.mj_model")
+        checked(parameters, CameraParameters | None, "GeometricCamera.parameters")
         _warn_of_unseen(mj_model)
         self.parameters = CameraParameters() if parameters is None else parameters
         self._mj_model = mj_model
@@ -87,7 +91,11 @@ class GeometricCamera:
 
         Raises:
             CameraError: If the poses were not computed, are not finite, or belong to another model.
+            ConfigurationError: If it is no `MjData`, or the heading is not a number.
         """
+        if type(mj_data) is not MjData or type(heading) is not float or not math.isfinite(heading):  # the checks take longer
+            checked(mj_data, MjData, "GeometricCamera.look: mj_data")
+            heading = checked(heading, float | None, "GeometricCamera.look: heading")
         if len(mj_data.geom_xpos) != len(self._objects):
             got = len(mj_data.geom_xpos)
             raise CameraError(f"GeometricCamera.look: mj_data belongs to another model: {got} geoms, not {len(self._objects)}")
@@ -139,6 +147,9 @@ class GeometricCamera:
             raise CameraError(f"GeometricCamera.restore: the state is of a camera with {len(state) - 1} objects, not {own}")
         self._labels[:] = state
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _made_again, (self._mj_model, {self._eye.kind: self._eye.name}, self.parameters, self.state())
+
     def compile_half(self, mj_data: MjData, half: Literal["scene", "rows"]) -> None:
         """Compiles half of what `look` needs, or loads it, so that two processes can share the work: the first look loads both halves.
 
@@ -169,6 +180,13 @@ class GeometricCamera:
             name = names_of(self._mj_model, "geom")[-1 - count] or str(-1 - count)
             raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is not a number; did the physics diverge?")
         return count
+
+
+def _made_again(mj_model: MjModel, eye: dict[str, str], parameters: CameraParameters, state: tuple[int, ...]) -> GeometricCamera:
+    """Returns a copy of a camera: its arrays are views of the model's memory, so they cannot be copied."""
+    camera = GeometricCamera(mj_model, parameters=parameters, **eye)
+    camera.restore(state)
+    return camera
 
 
 def _warn_of_unseen(mj_model: MjModel) -> None:

@@ -12,10 +12,10 @@ from annotated_types import Ge, Gt, Le, Lt
 from numpy.typing import NDArray
 
 from actr3d.camera.kernel.dtypes import OPTICS
-from actr3d.configuration import Configuration
+from actr3d.configuration import Configuration, InRadians
 from actr3d.errors import ConfigurationError
 
-Width = Annotated[float, Gt(0), Le(math.radians(179))]
+Width = Annotated[float, Gt(0), Le(math.radians(179)), InRadians()]
 """A field of view; a flat screen of 180 degrees would be infinitely wide."""
 RIGHT_ANGLE = math.pi / 2
 SIXTY_DEGREES = math.pi / 3

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import Annotated, Any, cast
 from zlib import crc32
 
 import numpy as np
+from annotated_types import Ge
 from numpy.random import Generator
 from numpy.typing import NDArray
 
 from actr3d.camera.parameters import CameraParameters, optics_of
+from actr3d.configuration import checked
 from actr3d.errors import CameraError, alternatives
 
 EDGES = ("x1", "x2", "d1", "d2", "a1", "a2")
@@ -19,6 +21,8 @@ EDGES = ("x1", "x2", "d1", "d2", "a1", "a2")
 
 NOISY = (*EDGES, "xn", "dn")
 """The fields that noise can be added to."""
+
+StandardDeviation = Annotated[float, Ge(0)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +88,7 @@ class View:
 
         Raises:
             CameraError: If they are not given by field, or there is no such field.
+            ConfigurationError: If one of them is not a number >= 0.
         """
         if not isinstance(sd, Mapping):
             fields = ", ".join(NOISY)
@@ -92,6 +97,6 @@ class View:
         for field, of in cast("Mapping[str, float]", sd).items():
             if field not in NOISY:
                 raise CameraError(f"noise of view: no field '{field}'{alternatives(field, NOISY)}")
-            extents[field] += of * random.standard_normal(len(extents))
+            extents[field] += checked(of, StandardDeviation, f"noise of view: {field}") * random.standard_normal(len(extents))
         extents.flags.writeable = False
         return replace(self, extents=extents)

@@ -109,6 +109,8 @@ class Limbs:
         by_axis: dict[str, list[str]] = {}
         for joint in of:
             by_axis.setdefault(self.joints[joint].axis, []).append(joint)
+        if not of and name in self.joints:
+            raise WorldError(f"{whose}: '{name}' is a joint, and only a part takes an axis (got {axis!r}); give an angle by name: angle=20")
         if not of:
             checked_name(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
         first, *others = by_axis[checked_name(axis, by_axis, f"{whose}: {name}", "axis")]

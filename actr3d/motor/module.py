@@ -18,7 +18,7 @@ from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError, WorldError
-from actr3d.motor.checks import check_patterns
+from actr3d.motor.checks import check_joints, check_patterns
 from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import SIZES, BodySchema
@@ -585,6 +585,7 @@ class Motor(WithParameters, Port):
         step = Step(seconds(now - self._felt_us), before, reading)
         self._felt_us = now
         if self._schema is None:
+            check_joints(limbs.plan.name, limbs.joints)
             self._update(limbs, reading, before)
             check_patterns(self)
         elif before != reading.positions or self._resized(reading):

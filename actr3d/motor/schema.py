@@ -20,6 +20,9 @@ AWAY, AWAY_SLIDE = 5.0, 0.01
 SIZES = ("width", "depth", "height", "middle")
 """The felt sizes of the body."""
 
+OTHER_SLOTS = ("posture", "end", "extreme", *SIZES)
+"""The slots of a posture that are not joints."""
+
 
 class BodySchema:
     """Stores the felt positions of the joints and the felt sizes of the body, and makes posture chunks from them.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from actr3d.actr import Memory
-from actr3d.actr.chunks.pattern import conditions
+from actr3d.actr.chunks.pattern import conditions, not_patterns
 from actr3d.errors import PatternException, PlanError, alternatives
 
 BEFORE, START, END = "none", "start", "finished"
@@ -75,7 +75,7 @@ class Situated:
             match, the one with the highest utility is chosen, or one at random.
 
     Raises:
-        PlanError: If it has no unit task or no end, or a name is reserved.
+        PlanError: If it has no unit task or no end, a name is reserved, or a situation is not a pattern.
         PatternException: If a pattern cannot be read.
     """
 
@@ -90,6 +90,8 @@ class Situated:
             raise PlanError(f"Situated({', '.join(situations)}): it has no end; give the situation in which it ends: until='dishes:clean'")
         _check_words("Situated", situations)
         for name, pattern in {**situations, "until": until}.items():
+            for part in not_patterns(pattern):
+                raise PlanError(f"Situated({name}={pattern!r}): {part!r} is not a pattern for b_context; write text, such as '{part}'")
             try:
                 conditions({"b_context": pattern})
             except PatternException as error:

@@ -11,6 +11,7 @@ from annotated_types import Ge, Le
 from actr3d.actr.explain.module_reasons import outcome_of
 from actr3d.actr.kernel.noise import duration
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.tree import lineage
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_request
 from actr3d.camera import CameraParameters, View
@@ -122,6 +123,7 @@ class Vision(WithParameters, Searching):
         self.private_view = private_view
         check_camera(camera, sorted(self._settable() - {"camera", *STATE}))
         self._detectors = dict(DETECTORS)
+        self._has_learnt = False
         self._saliences = saliences_of(salience, self._detectors)
         self._encoding = encoding_of(encoding)
         self._camera = camera
@@ -379,9 +381,15 @@ class Vision(WithParameters, Searching):
         self.emit("sight", **data, **({} if slots is None else {"chunk": slots}))
 
     def _learn_detectors(self) -> None:
-        """Adds the detectors that were registered after the module was made, such as those below the agent in its file."""
-        if not DETECTORS.keys() <= self._detectors.keys():
-            self._detectors = {**DETECTORS, **self._detectors}
+        """Adds the detectors that were registered after the module was made, such as those below the agent in its file.
+
+        Before its first request, those of the file also replace what other files, or earlier texts of this one, have defined.
+        """
+        own = set[str]() if self._has_learnt else {type(part).__module__ for part in lineage(self)}
+        self._has_learnt = True
+        newer = {name: one for name, one in DETECTORS.items() if name not in self._detectors or one.detect.__module__ in own}
+        if newer:
+            self._detectors = {**self._detectors, **newer}
             self._saliences = saliences_of(self.salience, self._detectors)
 
     def _kinds(self) -> dict[str, tuple[str, ...]]:

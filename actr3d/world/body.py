@@ -14,6 +14,7 @@ from mujoco import mjtJoint, mjtObj
 from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, WorldError, alternatives
+from actr3d.values import BASIC
 from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
@@ -223,7 +224,7 @@ class Body:
 
     def _read(self, word: str, values: tuple[Any, ...], noise: StandardDeviation, options: dict[str, Any]) -> Any:
         """Returns what `get` does; the reading may change what the agent senses later."""
-        reading = checked_function(word, self._sensors, self.name, "sensor")(self, *values, **options)
+        reading = _without_arrays(checked_function(word, self._sensors, self.name, "sensor")(self, *values, **options))
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
 
@@ -462,6 +463,18 @@ class Body:
             return int(getattr(self.physics.mj_model, kind)(name).id)
         except KeyError as error:
             raise WorldError(f"body '{self.name}': the compiled model has no {kind} '{name}'") from error
+
+
+def _without_arrays(reading: Any) -> Any:
+    """Returns a reading with tuples and numbers of Python instead of those of numpy: an array of MuJoCo changes with the next step."""
+    kind = cast("type[Any]", type(reading))
+    if kind is dict:
+        return {key: item if type(item) in BASIC else _without_arrays(item) for key, item in reading.items()}
+    if kind is tuple or kind is list:
+        return cast("Any", kind)([item if type(item) in BASIC else _without_arrays(item) for item in reading])
+    if issubclass(kind, (np.ndarray, np.generic)):
+        return tuple(map(_without_arrays, reading)) if reading.ndim else reading.item()
+    return reading
 
 
 def _named(kind: str, names: list[str]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Never
 
 import mujoco
 import numpy as np
@@ -67,6 +67,9 @@ class Physics:
         self.renderer: Any = None
         """Draws pictures; None before the first picture."""
 
+    def __reduce__(self) -> Never:
+        raise TypeError("a body, or another part of a World, cannot be copied alone; copy the World")
+
     @property
     def time(self) -> int:
         """Time since the start [us], counted in whole steps: it cannot drift."""
@@ -100,12 +103,12 @@ class Physics:
         self._update(mujoco.mj_collision)
 
     def refresh(self) -> None:
-        """Updates all that follows from the positions, such as contacts and rays, to the state, once per state."""
-        self._update(mujoco.mj_fwdPosition)
+        """Updates all that follows from the positions, such as contacts, rays and sensors of the file, to the state, once per state."""
+        self._update(mujoco.mj_fwdPosition, mujoco.mj_sensorPos)
         self._updated.update(_IN_FWD_POSITION)
 
     def solve(self) -> None:
-        """Updates forces and accelerations to the state too, once per state, without an effect on later steps."""
+        """Updates forces, accelerations and all sensors of the file to the state too, once per state, without an effect on later steps."""
         self.refresh()
         self._update(_solve)
 
@@ -201,7 +204,7 @@ class Physics:
 
 
 def _solve(model: MjModel, data: MjData) -> None:
-    """Computes forces and accelerations, without an effect on later steps."""
+    """Computes velocities, forces and accelerations, and the sensors of these, without an effect on later steps."""
     start = data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
-    mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 1)
+    mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 0)
     data.qacc_warmstart[:] = start

@@ -10,14 +10,14 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le, MinLen
 from mujoco import MjModel, MjSpec, mjtGeom
 
-from actr3d.configuration import Configuration
+from actr3d.configuration import Configuration, InRadians
 from actr3d.errors import ConfigurationError
 from actr3d.world.frames import FULL_TURN, wrapped, yaw_quaternion
 
 Name = Annotated[str, MinLen(1)]
 Length = Annotated[float, Gt(0)]
 Positive = Annotated[float, Gt(0)]
-Heading = Annotated[float, Ge(-FULL_TURN), Le(FULL_TURN)]
+Heading = Annotated[float, Ge(-FULL_TURN), Le(FULL_TURN), InRadians()]
 Colour = tuple[float, float, float, float]
 
 SHAPES = {

@@ -5,6 +5,8 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from numbers import Integral
+from typing import Any
 
 import numpy as np
 from mujoco import MjData, MjModel
@@ -54,8 +56,17 @@ class Bodies(dict[str, Body]):
         raise WorldError(f"no body '{name}'{alternatives(name, self)}")
 
 
+def _made_again(kind: type[World], scene: Scene, seed: int, state: WorldState) -> World:
+    """Returns a copy of a world."""
+    world = kind(scene, seed)
+    world.restore(state)
+    return world
+
+
 class World:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and steps them.
+
+    A copy, deep or pickled too, is a world in the same state, without the watchers.
 
     This is the physical world. The `World` of Python ACT-R, a map of cells, is `ccm.lib.grid.World` in model files.
 
@@ -69,12 +80,12 @@ class World:
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
-        if not isinstance(seed, int) or seed < 0:  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a file
+        if not isinstance(seed, Integral) or seed < 0:  # it may come from a file
             raise WorldError(f"World.seed: must be a whole number >= 0 (got {seed!r})")
         if not isinstance(scene, Scene):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"a world is made of a Scene (got {scene!r})")
         self.scene = scene
-        self.seed = seed
+        self.seed = int(seed)
         self.physics = Physics(scene)
         self.mj_model: MjModel = self.physics.mj_model
         self.mj_data: MjData = self.physics.mj_data
@@ -85,7 +96,7 @@ class World:
         described = [part for part in scene.parts if isinstance(part, Embodied)]
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
-        self.bodies = Bodies({part.name: Body(self.physics, part, seed) for part in described})
+        self.bodies = Bodies({part.name: Body(self.physics, part, self.seed) for part in described})
         segments = frozenset(f"{name}_{side}" for name in self._apertures for side in ("left", "right"))
         self.objects = Objects(self.physics, self.bodies, segments)
         """What can be moved by hand."""
@@ -228,6 +239,9 @@ class World:
             self.bodies[name].restore(body_state)
         self._pushes.restore(state.pushes)
         self.changed()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _made_again, (type(self), self.scene, self.seed, self.state())  # the arrays of MuJoCo cannot be copied one by one
 
     # -- objects moved by hand
 

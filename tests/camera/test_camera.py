@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import math
 import os
@@ -10,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tracemalloc
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,7 @@ from actr3d.camera import CameraParameters, GeometricCamera
 from actr3d.camera.kernel import SOURCES
 from actr3d.errors import CameraError, ConfigurationError, ModelWarning
 from tests.helpers.camera_scenes import compiled, mujoco, seen
+from tests.helpers.copies import COPIED
 
 BALL = '<geom name="ball" type="sphere" size=".3" pos="3 0 1.5"/>'
 CROWD = [
@@ -358,3 +361,29 @@ def test_what_it_cannot_see_is_named() -> None:
       </worldbody></mujoco>"""
     with pytest.warns(ModelWarning, match="the Geometric Camera does not see flex 'sheet': add a geom to each object that should be seen"):
         GeometricCamera(mujoco.MjModel.from_xml_string(text), site="eye")
+
+
+@pytest.mark.parametrize("copied", COPIED)
+def test_a_copy_of_a_camera_sees_the_changes_of_its_own_model(copied: Callable[[Any], Any]) -> None:
+    mj_model, mj_data = compiled(BALL)
+    camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=9))
+    before = camera.look(mj_data).as_dict()
+    other, model = (copied(camera), mj_model) if copied is copy.copy else copied((camera, mj_model))
+    assert other.state() == camera.state()
+    model.geom_size[0] *= 0.5
+    assert other.look(mj_data).as_dict() != before
+    assert (camera.look(mj_data).as_dict() == before) == (model is not mj_model)
+
+
+def test_arguments_of_another_type_are_refused() -> None:
+    mj_model, mj_data = compiled(BALL)
+    camera: Any = GeometricCamera
+    with pytest.raises(ConfigurationError, match=r"GeometricCamera\.mj_model: must be a MjModel \(got 'scene\.xml'\)"):
+        camera("scene.xml", site="eye")
+    with pytest.raises(ConfigurationError, match=r"GeometricCamera\.parameters: must be a CameraParameters \(got \{'rows': 3\}\)"):
+        camera(mj_model, site="eye", parameters={"rows": 3})
+    with pytest.raises(ConfigurationError, match=r"look: mj_data: must be a MjData \(got <mujoco"):
+        camera(mj_model, site="eye").look(mj_model)
+    for heading in (math.nan, math.inf, "left"):
+        with pytest.raises(ConfigurationError, match=r"look: heading: must be a (finite )?number \(got "):
+            camera(mj_model, site="eye").look(mj_data, heading)

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import mujoco
+import numpy as np
 import pytest
 
 from actr3d.actr.loading import load_text
 from actr3d.camera import CameraParameters, GeometricCamera, View
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, ConfigurationError
 from actr3d.recording import Recorded
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, World
@@ -108,6 +110,9 @@ def test_noise_of_a_view_is_seeded_and_leaves_the_view_alone() -> None:
     assert noisy.extents["d1"].tolist() != plain.extents["d1"].tolist()
     assert noisy.extents.tobytes() == second.get("view", noise={"d1": 0.05}).extents.tobytes()
     assert first.get("view") is plain
+    for sd in ("0.1", -0.1, math.nan, None):
+        with pytest.raises(ConfigurationError, match=r"noise of view: d1: must be .* \(got "):
+            plain.with_noise({"d1": sd}, np.random.default_rng(0))
 
 
 @pytest.mark.slow

@@ -354,6 +354,11 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("rotate", ("torso_jaw",), r"walker has no joint 'torso_jaw'; did you mean 'torso_yaw'\?"),
         ("rotate", ("torso",), "'torso' has several joints; give the axis: yaw, pitch, roll"),
         ("rotate", ("torso", "yew"), r"walker: torso has no axis 'yew'; did you mean 'yaw'\?"),
+        (
+            "rotate",
+            ("torso_yaw", 30),
+            r"walker: 'torso_yaw' is a joint, and only a part takes an axis \(got 30\); give an angle by name: angle=20",
+        ),
         ("rotate", ("tors", "yaw"), r"no jointed part 'tors'; did you mean 'torso'\?"),
         ("rotate", ("torso", "yaw", "far"), r"rotate: angle: must be a number \(got 'far'\)"),
         ("rotate_torso", (10, 0), r"rotate_torso: speed: must be > 0 to go to an angle \(got 0\)"),
@@ -537,6 +542,21 @@ def test_an_imported_arm_is_known_and_moved() -> None:
     assert motor.fore_end == "stopped"
     assert motor.elbow_angle == near(15, abs=2)
     assert {"shoulder", "elbow", "wrist", "grip"} <= motor.parent.posture.chunk.keys()
+
+
+@pytest.mark.parametrize("name", ["width", "posture"])
+def test_a_joint_with_the_name_of_another_slot_of_postures_is_refused(name: str) -> None:
+    arm = ImportedBody(name="arm", text=ARM.replace('"elbow"', f'"{name}"'))
+    with pytest.raises(WorldError, match=f"arm: the joint '{name}' has the name of another slot of postures; rename it"):
+        moving(body=arm)
+
+
+@pytest.mark.parametrize("name", ["left elbow", "left/elbow", "left-elbow", "1"])
+def test_joints_that_no_pattern_can_name_are_warned_of(name: str) -> None:
+    arm = ImportedBody(name="arm", text=ARM.replace('"elbow"', f'"{name}"'))
+    with pytest.warns(ModelWarning, match=f"arm: patterns cannot name the joints '{name}'; to match them, rename them"):
+        simulation, motor = moving(body=arm)
+    during(simulation, lambda: motor.rotate(name, angle=10))
 
 
 def test_a_joint_that_slides_needs_a_speed() -> None:

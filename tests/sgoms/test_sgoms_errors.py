@@ -26,6 +26,8 @@ from tests.helpers.sgoms_agents import HEAD, cooking
         (lambda: Situated(until="x:1"), "needs unit tasks"),
         (lambda: Situated(wash="dishes:dirty"), "it has no end; .*until="),
         (lambda: Situated(until="x:1", start="x:2"), "cannot be called 'start'"),
+        (lambda: Situated(until="x:1", boil=5), r"Situated\(boil=5\): 5 is not a pattern for b_context; write text, such as '5'"),
+        (lambda: Situated(until=["x:1", 2.5], boil="x:2"), r"Situated\(until=\['x:1', 2\.5\]\): 2\.5 is not a pattern"),
     ],
 )
 def test_invalid_planning_units_are_refused(declare: Any, message: str) -> None:

@@ -283,3 +283,20 @@ class Agent(Base):
     assert heard == near(0.55 + 0.01)
     assert moments(module, "sgoms_interrupt_now") == near([0.65])
     assert tasks(module) == ["boil", "steep", *PHONE, "steep", "pour"]
+
+
+def test_a_unit_task_of_another_planning_unit_that_partial_matching_brings_can_be_noticed() -> None:
+    body = """
+class Agent(Base):
+    DM = Memory(SGOMS.b_DM, threshold=-3)
+    level = DMBaseLevel(DM)
+    partial = Partial(DM)
+    alarm = Ordered("run", baselevel=5)
+    def notice(b_plan_unit="planning_unit:?unit state:retrieving", b_DM="planning_unit:!?unit unit_task:?other", DM="busy:False"):
+        said.append((self.now(), f"{other} instead of {unit}"))
+        b_DM.clear()
+        partial.strength = 9
+"""
+    module = cooking(body, seconds=2)
+    assert tasks(module) == ["run instead of tea", "boil", "steep", "pour"]
+    assert moments(module, "sgoms_ask_again")

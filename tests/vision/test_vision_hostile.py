@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from actr3d.actr.loading import run_text
 from actr3d.camera import CameraParameters
 from actr3d.errors import Actr3dError, ConfigurationError, ParameterError, VisionError
 from actr3d.vision import DETECTORS, Emma, Vision
@@ -240,6 +241,19 @@ def test_a_detector_of_a_known_name_that_is_registered_later_does_not_replace_it
     agent(HEAD + text.replace("DISTANCE", "2.0") + LOOK + "vision.request('feature:thing')")
     world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
     assert AgentWithoutPhysics(world, first).tick(12).agent.visual.chunk["distance"] == 1.0
+
+
+def agent_of_program(text: str) -> Any:
+    return vars(run_text(text))["Agent"]
+
+
+@pytest.mark.parametrize("load", [agent, agent_of_program])
+def test_a_detector_below_the_agent_replaces_one_that_an_earlier_text_has_defined(load: Any) -> None:
+    text = LOOK + "vision.request('feature:thing')\n@detector(Thing)\ndef things(view): return (Thing(distance=DISTANCE, direction=0.0),)\n"
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
+    for distance in (1.0, 2.0):
+        made = load(HEAD + text.replace("DISTANCE", str(distance)))
+        assert AgentWithoutPhysics(world, made).tick(12).agent.visual.chunk["distance"] == distance
 
 
 POLE = """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any, cast
 
 import numpy as np
@@ -11,6 +12,7 @@ import actr3d.camera  # pyright: ignore[reportUnusedImport] # noqa: F401 - it gi
 from actr3d.errors import WorldError
 from actr3d.world import Aperture, Car, Floor, ImportedBody, Mannequin, Scene, SimpleObject, World
 from actr3d.world.body import ACTUATORS, SENSORS
+from tests.helpers.copies import COPIED
 from tests.helpers.object_contents import picture
 
 ARM = """<mujoco>
@@ -149,3 +151,23 @@ def test_states_are_compared_and_hashed_as_the_objects_that_they_are() -> None:
     assert one == one
     assert one != other
     assert len({one, other}) == 2
+
+
+@pytest.mark.parametrize("copied", COPIED)
+def test_a_copy_of_a_world_continues_as_the_world_does_and_does_not_move_it(copied: Any) -> None:
+    world = World(Scene(parts=(Floor(), Aperture(position=(9, 0), width=0.8), Mannequin(name="walker"))), seed=1)
+    world.set_aperture_width(1.1)
+    world.bodies["walker"].set("walk", 1.3)
+    world.step(500)
+    before = world.state_bytes()
+    other = copied(world)
+    other.step(500)
+    assert world.state_bytes() == before
+    world.step(500)
+    assert other.state_bytes() == world.state_bytes()
+    walker, double = world.bodies["walker"], other.bodies["walker"]
+    assert double.bounding_box() == walker.bounding_box()
+    assert double.get("pose", noise=0.1) == walker.get("pose", noise=0.1)
+    assert double.get("view").as_dict() == walker.get("view").as_dict()
+    with pytest.raises(TypeError, match="cannot be copied alone; copy the World"):
+        copy.deepcopy(walker)

@@ -184,6 +184,12 @@ def conditions(patterns: object, bound: Mapping[str, Any] | None = None) -> tupl
     return (*reader.first, *reader.named_by_variable, *reader.last)
 
 
+def not_patterns(pattern: object) -> list[object]:
+    """Returns the parts of a pattern that are none, such as numbers: they match anything."""
+    parts = cast("Sequence[object]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
+    return [part for part in parts if part is not None and not isinstance(part, (str, Mapping)) and not callable(part)]
+
+
 def get_item(target: Any, key: Slot) -> Any:
     """Returns `target[key]`, or the attribute of that name if the target has no items; MISSING if there is neither."""
     try:

@@ -10,7 +10,7 @@ from actr3d.actr.declarative.activation import BY_PROFILE, ActivatedMemory, ByPr
 from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.declarative.spreading import countable
 from actr3d.actr.kernel.buffer import Buffer
-from actr3d.actr.kernel.parameters import Count, NotNegative, named_parameters
+from actr3d.actr.kernel.parameters import Count, NotNegative, check_number, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR
 from actr3d.errors import ChunkError
 
@@ -47,7 +47,12 @@ class DMAssociate(MemorySubModule):
         self.weight = weight
 
     def set_association(self, pre: Any, post: Any, baselevel: float) -> None:
-        """Sets the strength of the link from one value to another."""
+        """Sets the strength of the link from one value to another.
+
+        Raises:
+            ParameterError: If it is not a number.
+        """
+        check_number(baselevel, f"{type(self).__name__}.set_association({pre!r}, {post!r})", infinite=True, nan=True)
         self._link(pre, post).baselevel = baselevel
 
     def _link(self, pre: Any, post: Any) -> Any:

@@ -11,9 +11,10 @@ from functools import lru_cache
 from typing import Any, TypeAlias, cast
 
 from actr3d.actr.chunks.chunk import Chunk, Slot, as_text
-from actr3d.actr.chunks.pattern import Pattern, by_variable, parse
+from actr3d.actr.chunks.pattern import Pattern, by_variable, not_patterns, parse
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.partial_matching import Partial
+from actr3d.warnings import warn_modeller
 
 
 @lru_cache(maxsize=4096)
@@ -248,4 +249,6 @@ def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partia
                 return PlainSearch(plan, bound or {})
             if not plan.more:
                 return SimilarSearch(plan, bound or {}, partial)
+    for part in not_patterns(pattern):
+        warn_modeller(f"the request {part!r} is not a pattern and matches anything; write text, such as '{part}'")
     return PatternSearch(pattern, bound, partial)

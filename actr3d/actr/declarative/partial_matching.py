@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from actr3d.actr.chunks.chunk import Slot, as_text
 from actr3d.actr.declarative.activation_parts import activation_part
-from actr3d.actr.kernel.parameters import Extended, WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import Extended, WithParameters, check_number, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ParameterError
 from actr3d.warnings import warn_modeller
@@ -56,7 +56,12 @@ class Partial(WithParameters):
         memory.partials.append(self)
 
     def similarity(self, a: Any, b: Any, value: float) -> None:
-        """Declares the similarity of two values, in both directions; 0 means equal, negative numbers mean less similar."""
+        """Declares the similarity of two values, in both directions; 0 means equal, negative numbers mean less similar.
+
+        Raises:
+            ParameterError: If it is not a number.
+        """
+        check_number(value, f"{type(self).__name__}.similarity({a!r}, {b!r})", infinite=True, nan=True)
         self.sims[a, b] = value
         self.sims[b, a] = value
         self._texts[as_text(a), as_text(b)] = value

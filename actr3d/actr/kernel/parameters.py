@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable, Iterator
 from functools import cache, wraps
 from itertools import islice
-from numbers import Integral, Real
 from typing import Annotated, Any, ClassVar, Concatenate, ParamSpec, TypeVar, cast
 
 from annotated_types import Ge, Gt
@@ -192,13 +191,11 @@ def check_attribute(kind: type, name: str, value: Any) -> None:
 
 
 def _check(value: Any, declared: Any, where: str) -> None:
-    """Checks a value against a type with bounds; the numbers of other libraries count as Python's.
+    """Checks a value against a type with bounds.
 
     Raises:
         ParameterError: If it is of another type, or out of bounds.
     """
-    if isinstance(value, Real) and not isinstance(value, (int, float)):
-        value = int(value) if isinstance(value, Integral) else float(value)
     try:
         checked(value, declared, where)
     except ConfigurationError as error:

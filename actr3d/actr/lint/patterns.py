@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, cast
 
-from actr3d.actr.chunks.pattern import MISSING, Condition, by_variable
+from actr3d.actr.chunks.pattern import MISSING, Condition, by_variable, not_patterns
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_value
 from actr3d.actr.kernel.source_code import function_node
 from actr3d.actr.kernel.tree import TreeNode, top_of
@@ -20,10 +19,8 @@ from actr3d.warnings import warn_at
 def check_patterns(production: Production) -> None:
     """Warns about objects that are not patterns, and therefore match anything."""
     for name, pattern in production.pattern_specs.items():
-        parts = cast("list[Any]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
-        for part in parts:
-            if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
-                _warn_likely(production, f"{name}={part!r} is not a pattern and matches anything; write text, such as {name}='{part}'")
+        for part in not_patterns(pattern):
+            _warn_likely(production, f"{name}={part!r} is not a pattern and matches anything; write text, such as {name}='{part}'")
 
 
 def check_variables(production: Production) -> None:

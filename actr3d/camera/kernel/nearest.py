@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from actr3d.camera.kernel.dtypes import LINE, Record, Records
+from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, Record, Records
 from actr3d.camera.kernel.pieces import nearness, root_of
 from actr3d.jit import inner_compiled
 
@@ -19,6 +19,8 @@ FLAT = 0.03
 """A point counts as nearest if the relative change of distance per unit of tangent is less than this."""
 
 AT_ONCE: Final = 100
+AT_MOST: Final = 3
+"""The maximum number of stretches that one piece adds."""
 MANY: Final = (AT_ONCE,)
 
 STRETCHES = np.dtype(
@@ -55,18 +57,17 @@ arrays do not overlap, and can emit SIMD instructions that process four numbers 
 @inner_compiled
 def note(stretches: Record, owner: int, piece: Record, low: float, high: float, level: float, extents: Records) -> None:
     """Stores that a piece is seen in an extent between two tangents."""
-    if stretches.count == AT_ONCE:
+    if stretches.count > AT_ONCE - AT_MOST:
         find_nearest(stretches, extents)
-    number = stretches.count
-    stretches.count = number + 1
-    stretches.owner[number], stretches.least[number] = owner, max(low, -high, 0.0)
-    stretches.level[number], stretches.ceiling[number] = level, piece.ceiling
     if piece.side == LINE:
         start = piece.c0 - piece.c1 * piece.b0
         end = high if piece.c1 > 0.0 else low
-        u = min(high, max(low, piece.c1 * level / start)) if start > 0.0 else end
-        stretches.u[number], stretches.w[number] = u, nearness(piece, u)
+        _note_point(stretches, owner, piece, min(high, max(low, piece.c1 * level / start)) if start > 0.0 else end, level)
         return
+    if piece.side == FAR_SIDE:  # from inside, the nearest point may be an end, and the middle the farthest
+        _note_point(stretches, owner, piece, low, level)
+        _note_point(stretches, owner, piece, high, level)
+    number = _note_stretch(stretches, owner, piece, max(low, -high, 0.0), level)
     i = stretches.open
     stretches.open = i + 1
     # A ball or an upright pole is nearest at its middle; other round pieces are nearest on one side of it.
@@ -75,6 +76,23 @@ def note(stretches: Record, owner: int, piece: Record, low: float, high: float, 
     stretches.number[i], stretches.low[i], stretches.high[i], stretches.ground[i] = number, low, high, level
     stretches.side[i], stretches.a[i], stretches.b0[i], stretches.b1[i] = piece.side, piece.a, piece.b0, piece.b1
     stretches.c0[i], stretches.c1[i], stretches.c2[i] = piece.c0, piece.c1, piece.c2
+
+
+@inner_compiled
+def _note_point(stretches: Record, owner: int, piece: Record, u: float, level: float) -> None:
+    """Stores a stretch that is one point."""
+    number = _note_stretch(stretches, owner, piece, abs(u), level)
+    stretches.u[number], stretches.w[number] = u, nearness(piece, u)
+
+
+@inner_compiled
+def _note_stretch(stretches: Record, owner: int, piece: Record, least: float, level: float) -> int:
+    """Stores a stretch whose nearest point is not set yet; returns its number."""
+    number = stretches.count
+    stretches.count = number + 1
+    stretches.owner[number], stretches.least[number] = owner, least
+    stretches.level[number], stretches.ceiling[number] = level, piece.ceiling
+    return number
 
 
 @inner_compiled

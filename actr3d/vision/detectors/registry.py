@@ -101,7 +101,7 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         taken += [p.name for p in others if p.name in slots or p.name in finds.aliases]
         if taken:
             raise VisionError(f"detector '{name}': '{taken[0]}' is reserved in requests; use another name")
-        builtin = detect.__module__.startswith("actr3d.")
+        builtin = (detect.__module__ or "").startswith("actr3d.")
         try:
             DETECTORS.add(name, Detector(finds, detect, tuple(p.name for p in others), builtin), detect.__module__)
         except ValueError as error:

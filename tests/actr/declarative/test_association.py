@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr import Buffer, Chunk, DMAssociate, DMInhibition, Memory
-from actr3d.errors import ChunkError
+from actr3d.errors import ChunkError, ParameterError
 from tests.helpers.small_agents import near, started_agent
 
 
@@ -84,3 +84,8 @@ def test_inhibition() -> None:
     agent.memory.dm.append(Chunk("b"))
     with pytest.raises(ChunkError, match="DMInhibition has no data about chunk 'b'"):
         agent.memory.get_activation("b")
+
+
+def test_the_strength_of_a_link_is_a_number() -> None:
+    with pytest.raises(ParameterError, match=r"DMAssociate\.set_association\('a', 'b'\): must be a number \(got '0\.7'\)"):
+        associating().links.set_association("a", "b", "0.7")

@@ -131,6 +131,14 @@ def test_a_request_retrieves_the_best_of_all_that_match(seed: int) -> None:
             assert time == near(0.05 * math.exp(-best), abs=1.1e-6)
 
 
+@pytest.mark.parametrize("pattern", [5, 2.5, ["a:?", True]])
+def test_a_request_that_is_no_pattern_matches_anything_and_is_warned_of(pattern: Any) -> None:
+    agent = remembering(threshold=None)
+    agent.memory.add("a:1")
+    with pytest.warns(ModelWarning, match=r"the request .* is not a pattern and matches anything; write text, such as '"):
+        assert arrival(agent, pattern)[1] == {"a": "1"}
+
+
 def test_a_tie_is_decided_at_random() -> None:
     agent = remembering(finst_size=0)
     for n in range(3):

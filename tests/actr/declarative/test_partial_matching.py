@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr import Buffer, Chunk, DMFixed, Memory, Partial
-from actr3d.errors import ModelWarning
+from actr3d.errors import ModelWarning, ParameterError
 from tests.helpers.small_agents import started_agent
 
 
@@ -130,3 +130,9 @@ def test_similarities_of_numbers() -> None:
     with pytest.warns(ModelWarning, match=r"the similarity of 1 and 2\.5 is not found, .* write '1', '2\.5'") as caught:
         assert costs(agent, "n:1") == {"n:2.5": (-1, -1)}  # as python_actr has it
     assert [warning.filename for warning in caught] == [__file__]
+
+
+@pytest.mark.parametrize("value", ["-0.5", None, [0.5]])
+def test_a_similarity_is_a_number(value: Any) -> None:
+    with pytest.raises(ParameterError, match=r"Partial\.similarity\('red', 'rose'\): must be a number \(got "):
+        partial_agent().partial.similarity("red", "rose", value)

@@ -206,3 +206,27 @@ def test_a_changed_file_has_its_new_root(tmp_path: Path) -> None:
         body = f'<body name="{root}"><geom size="0.1"/></body>'
         file.write_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>", encoding="utf-8")
         assert ImportedBody(name="robot", path=file).anatomy().root == f"robot_{root}"
+
+
+def test_sensors_of_the_file_are_of_the_present_once_the_physics_is_refreshed_or_solved() -> None:
+    text = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide" axis="1 0 0" damping="1"/>
+      <geom name="box" type="box" size="0.1 0.1 0.05" mass="1"/><site name="place"/></body></worldbody>
+      <actuator><motor name="pull" joint="slide"/></actuator>
+      <sensor><jointpos name="at" joint="slide"/><jointvel name="speed" joint="slide"/><accelerometer name="felt" site="place"/>
+      </sensor></mujoco>"""
+    world, other = (World(Scene(parts=(ImportedBody(name="robot", text=text),), gravity=(0, 0, 0))) for _ in range(2))
+    body, data = world.bodies["robot"], world.mj_data
+    for each in (world, other):
+        each.bodies["robot"].set("control", "pull", 2.0)
+        each.step(50)
+    slide = body.get("joints")["slide"]
+    assert data.sensor("robot_at").data[0] != slide.position
+    body.physics.refresh()
+    assert data.sensor("robot_at").data[0] == slide.position
+    assert data.sensor("robot_speed").data[0] != slide.velocity
+    body.physics.solve()
+    assert data.sensor("robot_speed").data[0] == slide.velocity
+    assert data.sensor("robot_felt").data[0] == near(2 - slide.velocity)
+    for each in (world, other):
+        each.step(50)
+    assert world.state_bytes() == other.state_bytes()

@@ -18,6 +18,8 @@ from mujoco import MjSpec, mjtGeom
 from actr3d.errors import Actr3dError
 from actr3d.world import Aperture, Body, Car, Floor, Mannequin, Scene, SimpleObject, Wall, World
 from actr3d.world.anatomy import Anatomy
+from actr3d.world.body import SENSORS
+from actr3d.world.command_registry import BodyFunction
 from actr3d.world.sensor_noise import SensorNoise
 from actr3d.world.sensors.render import Picture
 from actr3d.world.sensors.touch import present
@@ -307,6 +309,23 @@ def test_readings_stay_as_they_were() -> None:
     assert body.get("pose").x == near(0.2)
     with pytest.raises(FrozenInstanceError):
         pose.x = 3.0
+
+
+def test_an_array_that_a_sensor_returns_becomes_a_tuple_that_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    def own(body: Any) -> Any:
+        body.physics.refresh()
+        place = body.physics.mj_data.xpos[body.root]
+        return {"place": place, "rows": [np.array([place[:2]])], "x": np.float32(place[0]), "none": np.array(3)}
+
+    world, body = walker_in()
+    monkeypatch.setitem(SENSORS, "own", BodyFunction("own", own, lambda _: True))
+    reading = body.get("own")
+    assert reading == {"place": (0.0, 0.0, 0.0), "rows": [((0.0, 0.0),)], "x": 0.0, "none": 3}
+    body.set("walk", 2.0)
+    ticks(world, 10)
+    assert reading["place"] == (0.0, 0.0, 0.0)
+    assert body.get("own")["place"][0] == near(0.2)
+    assert body.get("own", noise={"place": 0.1})["place"][1] != 0
 
 
 def test_noise_has_the_size_it_is_given_and_none_by_default() -> None:
