@@ -4,7 +4,7 @@ import { html, signal, useId } from "../vendor/preact.js";
 import { commandsOf } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
 import { TIMES, timeOfText } from "../parts/units.js";
-import { agentsOf, nameIn } from "../inspector/agents.js";
+import { agentsOf, nameIn, pathsOf, productionNames } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
 import { notify, session, state } from "../store.js";
@@ -20,14 +20,7 @@ const body = signal("");
 /** Why it cannot run until then, {field, text}: the field that is wrong, null for none; null if it can. */
 const problem = signal(null);
 
-function partsThat(holds) {
-  return Object.entries(state.value?.parts ?? {}).filter(([, part]) => holds(part));
-}
-
-/** Returns the productions of all agents by name. */
-function productionNames() {
-  return [...new Set(partsThat((part) => part.is === "system").flatMap(([, part]) => part.productions))].sort();
-}
+const productions = () => productionNames(state.value?.parts).sort();
 
 /** Returns the problem with an entry, such as an invalid time or a missing name; null if it can be sent. */
 function missing() {
@@ -42,7 +35,7 @@ function problemOf({ message, field = null }) {
   return { field, text: field === null ? message : message.slice(`${field}: `.length) };
 }
 
-commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
+commandsOf(() => productions().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
 
 function wanted() {
   switch (kind.value) {
@@ -59,14 +52,15 @@ function wanted() {
 
 /** Whether there is no production of this name any more, for example after an edit; unknown before a program has started. */
 function isLost(name) {
-  const names = productionNames();
+  const names = productions();
   return names.length > 0 && !names.includes(name);
 }
 
 /** Returns the names of the buffers as in the panel Buffers; preceded by the agent's name if there are several agents. */
 function bufferNames() {
-  const agents = agentsOf(state.value?.parts);
-  const paths = partsThat((part) => part.is === "buffer").map(([path]) => path);
+  const { parts } = state.value ?? {};
+  const agents = agentsOf(parts);
+  const paths = pathsOf(parts, "buffer");
   return agents.length === 1 ? paths.map((path) => nameIn(agents[0], path)) : paths;
 }
 
@@ -102,7 +96,7 @@ function Body() {
     <${Line} id="time" text=${texts.time}>
       <input aria-label="Time [s]" aria-invalid=${isWrong("time")} data-first=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
-    <${Line} id="production" text=${texts.production}><${Name} of=${production} field="production" among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
+    <${Line} id="production" text=${texts.production}><${Name} of=${production} field="production" among=${productions()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
     <${Line} id="buffer" text=${texts.buffer}>
       <${Name} of=${buffer} field="buffer" among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
       <input aria-label="Pattern" aria-invalid=${isWrong("pattern")} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />

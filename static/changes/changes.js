@@ -2,7 +2,7 @@
 
 import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
-import { systemsOf } from "../inspector/agents.js";
+import { pathsOf, productionNames, systemsOf } from "../inspector/agents.js";
 import { isTooLarge, literal, TOO_LARGE } from "../parameters/values.js";
 import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
@@ -49,14 +49,8 @@ export function useChange() {
   return { problem, send, forget: () => setProblem(null) };
 }
 
-/** The units in which people give a number instead of that of the field, and by how much their numbers are larger. */
-const FOR_PEOPLE = { rad: { unit: "°", factor: 180 / Math.PI } };
-
-/** Returns [unit, factor]: the unit in which a field is asked for, and by how much numbers are larger in it. */
-function unitOf({ unit }) {
-  const { unit: shown = unit, factor = 1 } = FOR_PEOPLE[unit] ?? {};
-  return [shown, factor];
-}
+/** Returns [unit, factor]: the unit in which people give a number of a field, and by how much numbers are larger in it. */
+const unitOf = ({ unit }) => (unit === "rad" ? ["°", 180 / Math.PI] : [unit, 1]);
 
 /** Returns the value of the text of a field: {value}, null for an empty number; or {problem}. */
 function read(field, text) {
@@ -74,16 +68,14 @@ function read(field, text) {
   }
 }
 
-const pathsOf = (kind) => Object.entries(state.value?.parts ?? {}).flatMap(([path, { is }]) => (is === kind ? [path] : []));
-
 /** The values among which a field is chosen, by its name; a field `name` has the name of what the change is of. */
 const CHOICES = {
   aperture: () => Object.keys(session.value?.world?.widths ?? {}),
   object: () => session.value?.world?.objects ?? [],
-  buffer: () => pathsOf("buffer"),
-  memory: () => pathsOf("memory"),
+  buffer: () => pathsOf(state.value?.parts, "buffer"),
+  memory: () => pathsOf(state.value?.parts, "memory"),
   system: () => systemsOf(state.value?.parts),
-  production: () => [...new Set(systemsOf(state.value?.parts).flatMap((system) => state.value.parts[system].productions))],
+  production: () => productionNames(state.value?.parts),
 };
 
 const choicesOf = ({ name }, of) => CHOICES[name === "name" ? of : name]?.() ?? [];

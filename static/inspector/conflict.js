@@ -5,7 +5,7 @@ import { useAnswer } from "../parts/answer.js";
 import { chosenText, isGone, nothingYet } from "../run_status.js";
 import { running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
-import { at, production, shownReasons } from "./explanation.js";
+import { at, explainProduction } from "./explanation.js";
 import { eventMomentText, pairs } from "./event_text.js";
 import { fixed } from "./part_names.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
@@ -68,7 +68,7 @@ function Cycle({ cycle, agents }) {
           ${rows.map(
             (row) => html`<tr key=${row.name} class=${row.chosen ? "selected" : ""}>
               <td class="sign">${row.chosen ? html`<span role="img" aria-label="chosen">▸</span>` : ""}</td>
-              <td><button class="link mono" onClick=${() => ((production.value = { system: source, name: row.name }), (shownReasons.value = "why"))}>${row.name}</button></td>
+              <td><button class="link mono" onClick=${() => explainProduction(source, row.name)}>${row.name}</button></td>
               <td class="number">${fixed(row.utility)}</td>
               ${names.length && !own ? html`<td class="number">${fixed(row.base)}</td>` : null}
               ${names.map((name) => html`<td key=${name} class="number">${row.parts[name] === undefined ? "" : fixed(row.parts[name])}</td>`)}

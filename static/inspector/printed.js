@@ -3,7 +3,7 @@
 import { signal } from "../vendor/preact.js";
 import { request } from "../server.js";
 import { alive, listeners, shownRun, state } from "../store.js";
-import { firstWhere } from "../timeline/search.js";
+import { firstWhere } from "../parts/search.js";
 
 const MAX_LINES = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
 const AT_ONCE = 20_000; // the number of events requested at once

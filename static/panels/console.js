@@ -13,7 +13,7 @@ import { Place } from "../parts/place.js";
 import { goToTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { alive, isGiven, moment, notices, session, shownRun, state } from "../store.js";
-import { firstWhere } from "../timeline/search.js";
+import { firstWhere } from "../parts/search.js";
 import { inThePast } from "../timeline/seek.js";
 
 const SIDES = 40; // the room for the margins of a row and for a scroll bar [px]

@@ -80,7 +80,6 @@ function Edges({ view }) {
     ${rest > 0 ? html`<p class="empty">${rest} more; «Copy as JSON» has all.</p>` : null}`;
 }
 
-
 function Eye() {
   const bodies = bodiesWithEye();
   const body = useSignal(null);

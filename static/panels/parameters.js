@@ -4,7 +4,7 @@ import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
 import { commandsOf } from "../commands.js";
-import { isMac, keyText, noteKey } from "../keys.js";
+import { hasMod, keyText, noteKey } from "../keys.js";
 import { openTab } from "../open_tab.js";
 import { match } from "../palette/fuzzy.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
@@ -133,7 +133,7 @@ function restart(event) {
 
 /** Presses «Run with these» for Mod+Enter. */
 function press(event) {
-  if (event.key !== "Enter" || !(isMac ? event.metaKey : event.ctrlKey)) return;
+  if (event.key !== "Enter" || !hasMod(event)) return;
   event.preventDefault();
   event.currentTarget.querySelector("[value=run]").click();
 }

@@ -6,7 +6,7 @@ import { numberText } from "../parts/ticks.js";
 import { session } from "../store.js";
 import { chunkCurve, colourOf, headingOf, titleOf } from "./curves.js";
 import { bandText } from "./lanes.js";
-import { firstWhere, nextWhere } from "./search.js";
+import { firstWhere, nextWhere } from "../parts/search.js";
 import { AXIS, column, MARGIN, NAME, PLOT } from "./rows.js";
 import { span } from "./view.js";
 
