@@ -8,7 +8,7 @@ import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
 import { silent } from "../silence.js";
-import { embedded } from "../windows.js";
+import { embedded } from "../address.js";
 import { connected, me, restarted, session, state } from "../store.js";
 
 const LOST = embedded === null ? "connection lost; trying again …" : "the kernel does not answer any more: run the cell again";

@@ -12,7 +12,7 @@ import { chooseRecording } from "./models.js";
 import { isOver, isRestarting, runStatus } from "../run_status.js";
 import { alive, notify, running, session, state } from "../store.js";
 import { sendCommandThere } from "../timeline/seek.js";
-import { embedded } from "../windows.js";
+import { embedded } from "../address.js";
 import { speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
 import { runUntil } from "./until.js";

@@ -111,7 +111,6 @@ function Body() {
 
 /** Asks until when to run, and runs until then; stays open, with the reason, if that is not possible. */
 export async function runUntil() {
-  const actions = [{ text: "Cancel", value: false }, { text: "Run until then", value: true, kind: "primary" }];
   problem.value = null;
   if (kind.value === "contact" && !bodies().length) kind.value = "time";
   let closed = false;
@@ -127,6 +126,6 @@ export async function runUntil() {
     }
     return true;
   }
-  await dialog({ title: "Run until", body: html`<${Body} />`, actions, check });
+  await dialog({ title: "Run until", body: html`<${Body} />`, actions: [{ text: "Run until then", kind: "primary" }], check });
   closed = true;
 }

@@ -147,7 +147,7 @@ export async function askAndMake(one, given = {}) {
     return made;
   };
   choose();
-  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
+  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: one.title, kind: "primary" }], check });
   closed = true;
 }
 

@@ -3,6 +3,7 @@
 import { literal } from "../parameters/values.js";
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
+import { nameWithUnit } from "../parts/units.js";
 import { labelOf, whenText } from "../runs/wording.js";
 
 const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };
@@ -16,7 +17,7 @@ export const stateText = ({ state }) => STATES[state] ?? state;
 export const columnText = (name) => (name === "wall_s" ? "computing time" : labelOf(name));
 
 /** Returns the name of a column with its unit, if it has one. */
-export const headText = ({ name, unit }) => `${columnText(name)}${unit ? ` [${unit}]` : ""}`;
+export const headText = ({ name, unit }) => nameWithUnit(columnText(name), unit);
 
 /** Returns a value of a column; participants of an only group have their number. */
 export function cellText(name, value, { groups }) {

@@ -28,7 +28,7 @@ function waitingText([time, , , data]) {
 }
 
 /** Returns the status of a part: what it waits for, which production is about to fire, how many chunks it has. */
-export function doing(part, request) {
+function doing(part, request) {
   if (part.is === "system") return part.chosen ? `${part.chosen} ${chosenText()}` : "nothing matches";
   if (part.state?.busy === true) {
     const groups = Object.keys(part.state).filter((name) => name.endsWith("_busy") && part.state[name] === true);
@@ -41,7 +41,7 @@ export function doing(part, request) {
 }
 
 /** The plain attributes of a part. */
-export function Attributes({ path, part }) {
+function Attributes({ path, part }) {
   const rows = Object.entries(part.state ?? {});
   if (rows.length === 0) return html`<p class="empty">It has no plain attributes.</p>`;
   return html`<table class="attributes" aria-label="Attributes of ${path}">

@@ -80,7 +80,7 @@ function canMove() {
 /** Asks which change is to be made, and for the rest. */
 async function moveOrPush() {
   const list = changesOf("object");
-  const actions = [{ text: "Cancel", value: null }, ...list.map((one) => ({ text: `${one.title} …`, value: one }))];
+  const actions = list.map((one) => ({ text: `${one.title} …`, value: one }));
   const body = html`<dl class="change-help">${list.map((one) => html`<dt>${one.title}</dt><dd>${one.help}</dd>`)}</dl><p class="quiet">The overlay «handles to move things» moves them with the mouse.</p>`;
   const chosen = await dialog({ title: "Change by hand", body, actions });
   if (chosen) askAndMake(chosen);

@@ -9,7 +9,7 @@ import { SaveButtons } from "./save_buttons.js";
 import { useSize } from "./size.js";
 import { CanvasSurface, scaled } from "./surface.js";
 import { numberText } from "./ticks.js";
-import { timeText } from "./units.js";
+import { nameWithUnit, timeText } from "./units.js";
 
 const LEFT = 46; // the width of the scale [px]
 const RIGHT = 32; // half of the last label of the axis is there [px]
@@ -68,7 +68,7 @@ export function Plot({ title, series, span, height, cursor, source }) {
       drawTimes(surface, below, span, { y: below.y + below.height, height: AXIS, room: { from: 0, to: wide } });
       drawCurves(surface, below, { series, span, range });
     };
-    return savePicture({ name, title: `${title}${unit ? ` [${unit}]` : ""}, ${source}`, width: wide, height: height + 24, draw }, kind);
+    return savePicture({ name, title: `${nameWithUnit(title, unit)}, ${source}`, width: wide, height: height + 24, draw }, kind);
   }
 
   return html`<figure class="plot" aria-label=${title}>

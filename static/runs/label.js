@@ -45,8 +45,7 @@ export async function labelRun(run) {
       return false;
     }
   };
-  const actions = [{ text: "Cancel", value: null }, { text: "Save", value: true, kind: "primary" }];
-  const isSaved = await dialog({ title: TITLE, body: html`<${Body} />`, actions, check });
+  const isSaved = await dialog({ title: TITLE, body: html`<${Body} />`, actions: [{ text: "Save", kind: "primary" }], check });
   closed = true;
   if (isSaved) await listRuns();
 }

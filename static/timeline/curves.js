@@ -8,7 +8,7 @@ import { isLeft, request } from "../server.js";
 import { alive, hurried, notify, period, running, session, state, history } from "../store.js";
 import { leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { firstFrom } from "../parts/search.js";
-import { exactTime } from "../parts/units.js";
+import { exactTime, nameWithUnit } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
 import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
@@ -135,7 +135,7 @@ export function plotUsual() {
 
 /** The heading of a plot, with its unit if it has one. */
 export function headingOf({ title, unit }) {
-  return unit ? `${title} [${unit}]` : title;
+  return nameWithUnit(title, unit);
 }
 
 const plotsOfBodies = computed(() => {

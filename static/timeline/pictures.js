@@ -41,9 +41,9 @@ export async function savePictures() {
       ${offered.map((plot, n) => html`<option key=${n} value=${n}>the plot of ${headingOf(plot)}</option>`)}
     </select>
   </label>`;
-  const kinds = [{ text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }];
-  if (offered.length > 0) kinds.unshift({ text: "CSV", value: "csv" });
-  const kind = await dialog({ title: "Save a picture or its values", body, actions: [{ text: "Cancel", value: null }, ...kinds] });
+  const actions = [{ text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }];
+  if (offered.length > 0) actions.unshift({ text: "CSV", value: "csv" });
+  const kind = await dialog({ title: "Save a picture or its values", body, actions });
   if (!kind) return;
   const plot = which.peek() === "" ? null : offered[Number(which.peek())];
   const name = pictureName(session.peek(), plot ? plot.title : "timeline");
