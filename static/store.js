@@ -37,6 +37,10 @@ export const shownRecording = computed(() => session.value?.recording ?? (sessio
 export const isShared = computed(() => (session.value?.watching ?? []).some((name) => name !== me.value));
 /** The run and epoch of the newest state: until a new run sends its first state, the page shows that of the previous run. */
 const stated = signal({ run: 0, epoch: 0 });
+/** The number of the run's events up to the moment that is shown. */
+export const eventCount = computed(() => state.value?.events ?? 0);
+/** The bodies of the run's world, by name. */
+export const bodies = computed(() => session.value?.world?.bodies ?? {});
 /** Whether there is a run that can answer questions. */
 export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null && stated.value.run === session.value.run);
 /** The moment that is shown, as a text that is unique for each moment, also of a run whose past was changed. */

@@ -7,7 +7,7 @@ import { TIMES, timeOfText } from "../parts/units.js";
 import { agentsOf, nameIn, pathsOf, productionNames } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
-import { notify, session, state } from "../store.js";
+import { bodies, state } from "../store.js";
 import { requestThere } from "../timeline/seek.js";
 
 const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
@@ -64,10 +64,6 @@ function bufferNames() {
   return agents.length === 1 ? paths.map((path) => nameIn(agents[0], path)) : paths;
 }
 
-function bodies() {
-  return Object.keys(session.value?.world?.bodies ?? {});
-}
-
 function Line({ id, text, children }) {
   const choose = () => {
     kind.value = id;
@@ -91,6 +87,7 @@ function Name({ of, field, among, label, otherwise, first }) {
 
 function Body() {
   const texts = Object.fromEntries(KINDS);
+  const touching = Object.keys(bodies.value);
   const stops = breakpoints.value;
   return html`
     <${Line} id="time" text=${texts.time}>
@@ -101,7 +98,7 @@ function Body() {
       <${Name} of=${buffer} field="buffer" among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
       <input aria-label="Pattern" aria-invalid=${isWrong("pattern")} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
     <//>
-    ${bodies().length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} field="contact" among=${bodies()} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
+    ${touching.length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} field="contact" among=${touching} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>
     ${stops.length
       ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span>${isLost(name) ? html`<span class="quiet">not in this run</span>` : null}<button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`
@@ -112,20 +109,14 @@ function Body() {
 /** Asks until when to run, and runs until then; stays open, with the reason, if that is not possible. */
 export async function runUntil() {
   problem.value = null;
-  if (kind.value === "contact" && !bodies().length) kind.value = "time";
-  let closed = false;
+  if (kind.value === "contact" && Object.keys(bodies.value).length === 0) kind.value = "time";
   async function check() {
     problem.value = missing();
     if (problem.value) return false;
-    try {
-      await requestThere(wanted());
-    } catch (error) {
-      if (!isLeft(error) && closed) notify(`Run until: ${error.message}`);
-      else if (!isLeft(error)) problem.value = problemOf(error);
-      return isLeft(error);
-    }
+    await requestThere(wanted()).catch((error) => {
+      if (!isLeft(error)) throw error;
+    });
     return true;
   }
-  await dialog({ title: "Run until", body: html`<${Body} />`, actions: [{ text: "Run until then", kind: "primary" }], check });
-  closed = true;
+  await dialog({ title: "Run until", body: html`<${Body} />`, actions: [{ text: "Run until then", kind: "primary" }], check, onError: (error) => (problem.value = problemOf(error)) });
 }

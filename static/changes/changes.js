@@ -12,7 +12,7 @@ import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
 import { isOver, runStatus } from "../run_status.js";
 import { request } from "../server.js";
-import { alive, notify, session, state } from "../store.js";
+import { alive, session, state } from "../store.js";
 import { computed, html, signal, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
@@ -29,22 +29,25 @@ export function changesOf(of) {
   return changes.value.filter((one) => one.of === of);
 }
 
-/** Makes a change; returns {made, problem}: whether it is made, and why it cannot be. The user may also decide against it: then there is no problem. */
-async function make(word, named) {
-  try {
-    return { made: await change({ type: "command", word, named }), problem: null };
-  } catch (error) {
-    return { made: false, problem: error.message.replace(`${word}.`, "") }; // the form names the field alone
-  }
+/** Makes a change; returns whether it is made: the user may decide against it. Throws an Error with the reason if it cannot be. */
+function make(word, named) {
+  return change({ type: "command", word, named }).catch((error) => {
+    throw new Error(error.message.replace(`${word}.`, "")); // the form names the field alone
+  });
 }
 
 /** Returns {problem, send}: a function that makes a change and stores the problem for showing it beside; it returns whether it is made. */
 export function useChange() {
   const [problem, setProblem] = useState(null);
   const send = async (word, named) => {
-    const { made, problem: found } = await make(word, named);
-    setProblem(found);
-    return made;
+    try {
+      const made = await make(word, named);
+      setProblem(null);
+      return made;
+    } catch (error) {
+      setProblem(error.message);
+      return false;
+    }
   };
   return { problem, send, forget: () => setProblem(null) };
 }
@@ -120,7 +123,6 @@ export async function askAndMake(one, given = {}) {
   const values = { ...first };
   const problem = signal(null);
   const known = signal({}); // the present values of what is chosen, by field: exact, and as they are shown
-  let closed = false;
   async function choose() {
     const named = { ...given, ...Object.fromEntries(fields.flatMap(({ name }) => (choices[name].length ? [[name, values[name]]] : []))) };
     const found = await request({ type: "present", word: one.word, named }).catch(() => ({})); // the form can do without
@@ -141,14 +143,10 @@ export async function askAndMake(one, given = {}) {
       if (wrong) return false;
       if (value !== null || field.required) named[field.name] = value;
     }
-    const { made, problem: found } = await make(one.word, named);
-    problem.value = found;
-    if (closed && found) notify(`${one.title}: ${found}`);
-    return made;
+    return make(one.word, named);
   };
   choose();
-  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: one.title, kind: "primary" }], check });
-  closed = true;
+  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: one.title, kind: "primary" }], check, onError: (error) => (problem.value = error.message) });
 }
 
 commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title} …`, group: `Change by hand: ${one.of}`, work: () => askAndMake(one), ready: () => !noChange.value, why: () => noChange.value })) : []));
@@ -157,9 +155,9 @@ commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title
 const needsMore = (one, given) => one.fields.some(({ name, required }) => required && !(name in given));
 
 /** The buttons for all changes of a thing: one that needs nothing else is made at once, others ask for the rest. */
-export function ChangeButtons({ of, given, without = [] }) {
+export function ChangeButtons({ of, given }) {
   const { problem, send } = useChange();
-  const list = changesOf(of).filter(({ word }) => !without.includes(word));
+  const list = changesOf(of);
   if (list.length === 0) return null;
   const act = (one) => (needsMore(one, given) ? askAndMake(one, given) : send(one.word, given));
   return html`<span class="change-buttons">

@@ -19,10 +19,6 @@ function query(names) {
   return names.map((name) => `name=${encodeURIComponent(name)}`).join("&");
 }
 
-async function read(run, names) {
-  return call("GET", `${recordingPath(run.id)}/curves?most=${MAX_MOMENTS}&${query(names)}`);
-}
-
 /** Returns the joint that moves most; undefined if there is none. */
 async function moving(run, known) {
   const joints = known.filter(({ group }) => group === "joint").map(({ name }) => name);
@@ -65,7 +61,7 @@ function useCurves(runs) {
     async function complete(run) {
       const missing = chosen.value.filter((name) => !samples.value[`${run.id} ${name}`]);
       if (missing.length === 0) return;
-      const { times, curves, events } = await read(run, missing);
+      const { times, curves, events } = await call("GET", `${recordingPath(run.id)}/curves?most=${MAX_MOMENTS}&${query(missing)}`);
       if (over) return;
       const more = missing.map((name) => [`${run.id} ${name}`, events[name] ?? { times, values: curves[name] ?? [] }]);
       samples.value = { ...samples.value, ...Object.fromEntries(more) };

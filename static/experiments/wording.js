@@ -58,13 +58,11 @@ function levelText(level) {
 
 export const levelsText = (levels) => levels.map(levelText).join(", ");
 
-const UNLIMITED = { levels: Infinity, characters: Infinity };
-
 /** Returns the levels that a text lists, separated by commas, the text of each, and what is wrong: {levels, texts, problem}; either what
  * is wrong is null, or the others are. Texts may be in quotes.
  *
- * @param most The greatest number of levels, and of characters of a level, that the server takes. */
-export function readLevels(text, most = UNLIMITED) {
+ * @param most The greatest number of `levels`, and of `characters` of a level, that the server takes. */
+export function readLevels(text, most) {
   const none = { levels: null, texts: null };
   const wrong = (problem) => ({ ...none, problem: `${problem} (got '${text}')` });
   const parts = [""];

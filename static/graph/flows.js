@@ -1,7 +1,7 @@
 // What flows between the productions, buffers and modules of a run, as its events show it.
 
 import { agentOf, agentsOf, productionKey } from "../inspector/agents.js";
-import { events, state, history } from "../store.js";
+import { eventCount, events, history, state } from "../store.js";
 
 const ENDS = new Set(["conflict", "fire", "initialize"]); // what follows is no longer the work of the production that has fired
 const OWN = new Set(["buffer", "state", "request", "productions", "select", "add", "output"]); // these say nothing of where a buffer's content comes from
@@ -93,7 +93,7 @@ export function flows() {
  * and the modules that have filled buffers; by system, if `belongs` says that a source belongs to it. */
 export function justNow(period, belongs) {
   const { list, first } = events.value;
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const since = Math.round(((state.value?.time ?? 0) - period) * 1e6);
   let fired = null;
   const answered = new Set();

@@ -3,7 +3,7 @@
 import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
 import { chosenText, isGone, nothingYet } from "../run_status.js";
-import { running, state } from "../store.js";
+import { eventCount, running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, explainProduction } from "./explanation.js";
 import { eventMomentText, pairs } from "./event_text.js";
@@ -85,7 +85,7 @@ function Cycle({ cycle, agents }) {
 export function ConflictSets() {
   const filtered = useEventFilter(isChoice, "choices");
   const agents = agentsOf(state.value?.parts);
-  const cycles = lastCycles(filtered, at.value === null ? (state.value?.events ?? 0) : Infinity, at.value === null ? null : at.value * 1e6);
+  const cycles = lastCycles(filtered, at.value === null ? eventCount.value : Infinity, at.value === null ? null : at.value * 1e6);
   if (cycles.length === 0) return isGone.value ? null : html`<p class="empty">${nothingYet("No production has matched in this run.")}</p>`;
   return html`${cycles.map((cycle) => html`<${Cycle} key=${cycle.source} cycle=${cycle} agents=${agents} />`)}`;
 }

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { requestText, valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { chosenText } from "../run_status.js";
-import { state } from "../store.js";
+import { eventCount } from "../store.js";
 import { eventMomentText, pairs } from "./event_text.js";
 import { Flash } from "./flash.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
@@ -14,7 +14,7 @@ export function useRequests(paths) {
   const filtered = useEventFilter((event) => event[2] === "request", "requests");
   const found = new Map();
   const wanted = new Set(paths);
-  for (let n = filtered.below(state.value?.events ?? 0) - 1; n >= 0 && wanted.size > 0; n -= 1) {
+  for (let n = filtered.below(eventCount.value) - 1; n >= 0 && wanted.size > 0; n -= 1) {
     const event = eventAt(filtered.numbers[n]);
     if (wanted.delete(event[1])) found.set(event[1], event);
   }

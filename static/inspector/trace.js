@@ -16,7 +16,7 @@ import { furthest, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
 import { buttonTitle } from "../keys.js";
-import { events, session, shownRun, state } from "../store.js";
+import { eventCount, events, session, shownRun, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
@@ -93,7 +93,7 @@ export function FiringTrace() {
   const filtered = useEventFilter(test, key);
   const mixed = new Mixed(filtered.numbers, contactEvents().filter(test));
   const { first, list } = events.value;
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const time = (state.value?.time ?? 0) * 1e6 + 1;
   const present = filtered.below(now) + mixed.contacts.filter(([begins]) => begins <= time).length;
   const several = systems.length > 1;

@@ -12,7 +12,7 @@ import { pictureName, saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
 import { goToTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
-import { alive, isGiven, moment, notices, session, shownRun, state } from "../store.js";
+import { alive, eventCount, isGiven, moment, notices, session, shownRun, state } from "../store.js";
 import { firstWhere } from "../parts/search.js";
 import { inThePast } from "../timeline/seek.js";
 
@@ -96,7 +96,7 @@ function textOf({ level, file, line, text }) {
 
 /** Returns what is listed, and what is not. `memo` is `useMemo` where a component calls it. */
 function listing(memo = (make) => make()) {
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const version = printedVersion.value;
   const wanted = words.value.toLowerCase();
   const has = (text) => text.toLowerCase().includes(wanted);
@@ -122,7 +122,7 @@ function Line({ entry: [line, row] }) {
 }
 
 function Notes({ gaps, dropped, gone, all, ahead }) {
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const missing = gaps.reduce((sum, [from, to]) => sum + Math.max(0, Math.min(to, now) - from), 0);
   return html`
     ${dropped > 0 ? html`<p class="note">The first ${counted(dropped, "line is", "lines are")} left out: there are too many.</p>` : null}
@@ -137,7 +137,7 @@ function save() {
 }
 
 function clearAll() {
-  clear(state.peek()?.events ?? 0, Math.max(-1, ...notices.peek().map(({ number }) => number)));
+  clear(eventCount.peek(), Math.max(-1, ...notices.peek().map(({ number }) => number)));
 }
 
 const registered = (text, work) =>

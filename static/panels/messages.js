@@ -2,7 +2,6 @@
 
 import { computed, html, useEffect } from "../vendor/preact.js";
 import { command } from "../commands.js";
-import { hasMore } from "../editor/marks.js";
 import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { toggled } from "../parts/toggled.js";
@@ -64,7 +63,7 @@ function Message({ notice }) {
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
     ${action ? html` <${Button} class="link action" onClick=${() => takeAction(notice)}>${action.text}<//>` : null}
-    ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
+    <${Traceback} message=${text} detail=${detail} />
   </li>`;
 }
 

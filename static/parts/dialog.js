@@ -2,6 +2,7 @@
 
 import { Button } from "./button.js";
 import { Problem } from "./problem.js";
+import { notify } from "../store.js";
 import { html, signal, useEffect, useId, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 
 /** The open dialogs; the last one is on top. */
@@ -11,10 +12,11 @@ let opened = 0;
 /** Shows a dialog, on top of those that are open: `title`, `body` (made by `html`) and `actions` besides Cancel, [{text, kind?, value?, busy?}];
  * without any, it has the button Close. Returns the value of the chosen action, which is true by default; null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
  * with choices [{value, text}], {text, choice}. With `check` it stays open until that function has checked the result of an action and
- * returned true; the function shows itself what is wrong, and meanwhile the action's button has the text `busy`. */
-export function dialog({ title, body = null, actions = [], ask = undefined, check = undefined }) {
+ * returned true; the function shows itself what is wrong, and meanwhile the action's button has the text `busy`. An Error that it throws is
+ * shown by `onError`; among the messages, if the user has closed the dialog. */
+export function dialog({ title, body = null, actions = [], ask = undefined, check = undefined, onError = undefined }) {
   opened += 1;
-  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions: [{ text: actions.length > 0 ? "Cancel" : "Close", value: null }, ...actions], ask, check, resolve }]));
+  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions: [{ text: actions.length > 0 ? "Cancel" : "Close", value: null }, ...actions], ask, check, onError, resolve }]));
 }
 
 /** Asks for confirmation; returns whether the user agrees. */
@@ -67,12 +69,22 @@ function Dialog({ shown }) {
     const result = shown.ask && value ? written() : value;
     if (value && shown.check) {
       checking.value = true;
-      const fine = await shown.check(result);
+      const fine = await checked(result);
       checking.value = false;
       if (!fine || !isOpen()) return;
     }
     open.value = open.peek().filter((other) => other !== shown);
     shown.resolve(result);
+  }
+
+  async function checked(result) {
+    try {
+      return await shown.check(result);
+    } catch (error) {
+      if (isOpen()) shown.onError(error);
+      else notify(`${shown.title}: ${error.message}`);
+      return false;
+    }
   }
 
   function written() {

@@ -127,8 +127,7 @@ export function Table({ list, open }) {
     return () => clearInterval(clock);
   }, []);
 
-  const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.top / ROW) - AROUND));
-  const beyond = Math.min(list.length, first + Math.ceil(seen.height / ROW) + 2 * AROUND);
+  const [first, beyond] = seen.range(list.length, ROW, AROUND);
   const kept = list.findIndex((run) => run.id === focused.value);
   if (kept >= 0) spot.current = kept;
   // The rows before and after it are drawn too, for the keys that lead to them; when it is deleted, one of them gets the focus.

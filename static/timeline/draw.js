@@ -3,7 +3,7 @@
 import { drawCurves, drawTimes, valueAt } from "../parts/curve.js";
 import { cut, cutMiddle, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
-import { session } from "../store.js";
+import { bodies } from "../store.js";
 import { chunkCurve, colourOf, headingOf, titleOf } from "./curves.js";
 import { bandText } from "./lanes.js";
 import { firstWhere, nextWhere } from "../parts/search.js";
@@ -244,8 +244,8 @@ function labelsOf(plot, room) {
 function shortName(name, { title, group, series }) {
   const of = chunkCurve(name);
   if (of) return title !== titleOf(group) ? of.part : `${of.memory}: ${of.chunk}${of.kind === "activation" ? "" : ` ${of.part}`}`;
-  const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
-  const body = bodies.length === 1 && /^[_ .]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
+  const [only = "", ...others] = Object.keys(bodies.peek());
+  const body = others.length === 0 && /^[_ .]/.test(name.slice(only.length)) && name.startsWith(only) ? only : "";
   const rest = name.slice(body ? body.length + 1 : 0);
   const last = ` ${title}`;
   const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest.endsWith(last) ? rest.slice(0, -last.length) : rest.replace(`.${title}`, "");
