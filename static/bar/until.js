@@ -10,7 +10,7 @@ import { isLeft } from "../server.js";
 import { bodies, state } from "../store.js";
 import { requestThere } from "../timeline/seek.js";
 
-const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
+const TEXTS = { time: "a time", production: "a production fires", buffer: "a buffer matches", contact: "something is touched" };
 const kind = signal("time");
 const time = signal("");
 const production = signal("");
@@ -38,16 +38,13 @@ function problemOf({ message, field = null }) {
 commandsOf(() => productions().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
 
 function wanted() {
-  switch (kind.value) {
-    case "time":
-      return { type: "until", time: timeOfText(time.value) };
-    case "production":
-      return { type: "until", production: production.value };
-    case "buffer":
-      return { type: "until", buffer: buffer.value, pattern: pattern.value };
-    default:
-      return { type: "until", contact: body.value };
-  }
+  const ends = {
+    time: { time: timeOfText(time.value) },
+    production: { production: production.value },
+    buffer: { buffer: buffer.value, pattern: pattern.value },
+    contact: { contact: body.value },
+  };
+  return { type: "until", ...ends[kind.value] };
 }
 
 /** Whether there is no production of this name any more, for example after an edit; unknown before a program has started. */
@@ -64,13 +61,13 @@ function bufferNames() {
   return agents.length === 1 ? paths.map((path) => nameIn(agents[0], path)) : paths;
 }
 
-function Line({ id, text, children }) {
+function Line({ id, children }) {
   const choose = () => {
     kind.value = id;
     problem.value = null;
   };
   return html`<div class="until ${kind.value === id ? "on" : ""}">
-    <label><input type="radio" name="until" checked=${kind.value === id} onChange=${choose} /> ${text}</label>
+    <label><input type="radio" name="until" checked=${kind.value === id} onChange=${choose} /> ${TEXTS[id]}</label>
     <span onInput=${choose}>${children}</span>
     ${problem.value && kind.value === id ? html`<p class="bad" role="alert">${problem.value.text}</p>` : null}
   </div>`;
@@ -86,19 +83,18 @@ function Name({ of, field, among, label, otherwise, first }) {
 }
 
 function Body() {
-  const texts = Object.fromEntries(KINDS);
   const touching = Object.keys(bodies.value);
   const stops = breakpoints.value;
   return html`
-    <${Line} id="time" text=${texts.time}>
+    <${Line} id="time">
       <input aria-label="Time [s]" aria-invalid=${isWrong("time")} data-first=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
-    <${Line} id="production" text=${texts.production}><${Name} of=${production} field="production" among=${productions()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
-    <${Line} id="buffer" text=${texts.buffer}>
+    <${Line} id="production"><${Name} of=${production} field="production" among=${productions()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
+    <${Line} id="buffer">
       <${Name} of=${buffer} field="buffer" among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
       <input aria-label="Pattern" aria-invalid=${isWrong("pattern")} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
     <//>
-    ${touching.length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} field="contact" among=${touching} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
+    ${touching.length ? html`<${Line} id="contact"><${Name} of=${body} field="contact" among=${touching} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>
     ${stops.length
       ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span>${isLost(name) ? html`<span class="quiet">not in this run</span>` : null}<button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`

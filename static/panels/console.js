@@ -10,6 +10,8 @@ import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
 import { pictureName, saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
+import { useSize } from "../parts/size.js";
+import { widthOf } from "../parts/surface.js";
 import { goToTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { alive, eventCount, isGiven, moment, notices, session, shownRun, state } from "../store.js";
@@ -157,14 +159,10 @@ registered("Clear the console", clearAll);
 
 function Console() {
   const box = useRef(null);
+  const { width } = useSize(box);
   useLayoutEffect(() => {
-    const pen = document.createElement("canvas").getContext("2d");
-    pen.font = `12px ${getComputedStyle(box.current).getPropertyValue("--mono")}`;
-    const wide = pen.measureText("0").width;
-    const watcher = new ResizeObserver(() => (columns.value = Math.floor((box.current.clientWidth - SIDES) / wide)));
-    watcher.observe(box.current);
-    return () => watcher.disconnect();
-  }, []);
+    if (width > 0) columns.value = Math.floor((width - SIDES) / widthOf("0", { mono: true, size: 12 }));
+  }, [width]);
   const { listed, ahead, all, gaps, dropped, gone, of } = listing(useMemo);
   useEffect(() => {
     const timer = setTimeout(fillGaps, 0);

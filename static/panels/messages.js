@@ -39,16 +39,12 @@ command({
   why: () => "There are no messages.",
 });
 
-function toggle(level) {
-  hidden.value = toggled(hidden.value, level);
-}
-
 function Filter() {
   const count = (level) => kept.value.filter((notice) => notice.level === level).length;
   return html`<div class="tools" role="toolbar" aria-label="Messages">
     ${Object.entries(LEVELS).map(
       ([level, text]) => html`<label key=${level}>
-        <input type="checkbox" checked=${!hidden.value.includes(level)} onChange=${() => toggle(level)} />
+        <input type="checkbox" checked=${!hidden.value.includes(level)} onChange=${() => (hidden.value = toggled(hidden.value, level))} />
         ${text} <span class="count">${count(level)}</span>
       </label>`,
     )}

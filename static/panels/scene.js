@@ -168,9 +168,10 @@ export function Scene() {
   const pictured = useSignal({ of: "", drawn: null });
   useEffect(() => {
     const hear = ({ source, data }) => {
-      if (source === frame.current.contentWindow && typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
-      if (source === frame.current.contentWindow && Array.isArray(data?.camera)) keepCamera(data.camera);
-      if (source === frame.current.contentWindow && data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
+      if (source !== frame.current.contentWindow) return;
+      if (typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
+      if (Array.isArray(data?.camera)) keepCamera(data.camera);
+      if (data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
     };
     addEventListener("message", hear);
     return () => removeEventListener("message", hear);

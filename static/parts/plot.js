@@ -14,6 +14,7 @@ import { nameWithUnit, timeText } from "./units.js";
 const LEFT = 46; // the width of the scale [px]
 const RIGHT = 32; // half of the last label of the axis is there [px]
 const AXIS = 18; // [px]
+const LEGEND = 24; // the height of the legend of a picture [px]
 
 function boxOf(width, height) {
   return { x: LEFT, y: 4, width: Math.max(10, width - LEFT - RIGHT), height: Math.max(10, height - AXIS - 4) };
@@ -26,6 +27,18 @@ function drawPlot(surface, width, height, { series, span, range, at }) {
   if (at === null || at < span.from || at > span.to) return;
   const x = Math.round(box.x + ((at - span.from) / (span.to - span.from)) * box.width) + 0.5;
   surface.line([x, box.y, x, box.y + box.height], "strong-line");
+}
+
+/** Returns curves with their legend as a picture, without its name and title: {width, height, draw}; `until` as in `drawCurves`. `height` is that of
+ * the curves with their axis. */
+export function pictureOfPlot({ series, span, range, until }, width, height) {
+  const box = { ...boxOf(width, height), y: LEGEND };
+  const draw = (surface) => {
+    drawLegend(surface, LEFT, 8, width - LEFT, series);
+    drawTimes(surface, box, span, { y: box.y + box.height, height: AXIS, room: { from: 0, to: width }, longest: until });
+    drawCurves(surface, box, { series, span, range, until });
+  };
+  return { width, height: height + LEGEND, draw };
 }
 
 /**
@@ -61,14 +74,7 @@ export function Plot({ title, series, span, height, cursor, source }) {
       const curves = series.map((one) => ({ ...one, name: `${title} ${one.name}` }));
       return saveFile(`${name}.csv`, new Blob([csvText(curves)], { type: "text/csv" }));
     }
-    const wide = Math.max(640, width);
-    const draw = (surface) => {
-      drawLegend(surface, LEFT, 8, wide - LEFT, series);
-      const below = { ...boxOf(wide, height), y: 24 };
-      drawTimes(surface, below, span, { y: below.y + below.height, height: AXIS, room: { from: 0, to: wide } });
-      drawCurves(surface, below, { series, span, range });
-    };
-    return savePicture({ name, title: `${nameWithUnit(title, unit)}, ${source}`, width: wide, height: height + 24, draw }, kind);
+    return savePicture({ ...pictureOfPlot({ series, span, range }, Math.max(640, width), height), name, title: `${nameWithUnit(title, unit)}, ${source}` }, kind);
   }
 
   return html`<figure class="plot" aria-label=${title}>
