@@ -16,7 +16,8 @@ const isChoice = ([, , kind, data]) => kind === "select" || kind === "fire" || k
 function lastCycles(filtered, end, time) {
   const cycles = new Map();
   const after = new Map(); // the events after the conflict, by system
-  for (let n = filtered.below(end) - 1; n >= 0 && n > filtered.below(end) - 2000; n -= 1) {
+  const last = filtered.below(end) - 1;
+  for (let n = last; n >= 0 && n > last - 1999; n -= 1) {
     const [when, source, kind, data] = eventAt(filtered.numbers[n]);
     if (cycles.has(source) || (time !== null && when > time)) continue;
     if (kind === "conflict") cycles.set(source, { source, time: when, conflict: data, ...after.get(source) });

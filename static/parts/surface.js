@@ -61,6 +61,16 @@ function longestFit(count, shortened, most, style) {
   return fits > 0 ? shortened(fits) : "";
 }
 
+/** Calls `go` with each point of [x, y, x, y, …] and whether a line begins there; NaN breaks it. */
+function along(points, go) {
+  let begins = true;
+  for (let n = 0; n < points.length; n += 2) {
+    const isBreak = Number.isNaN(points[n + 1]);
+    if (!isBreak) go(points[n], points[n + 1], begins);
+    begins = isBreak;
+  }
+}
+
 /** Draws on a canvas. Colours are names of style.css. */
 export class CanvasSurface {
   constructor(context) {
@@ -101,15 +111,7 @@ export class CanvasSurface {
     context.lineJoin = "round";
     context.setLineDash(dash);
     context.beginPath();
-    let broken = true;
-    for (let n = 0; n < points.length; n += 2) {
-      if (Number.isNaN(points[n + 1])) broken = true;
-      else {
-        if (broken) context.moveTo(points[n], points[n + 1]);
-        else context.lineTo(points[n], points[n + 1]);
-        broken = false;
-      }
-    }
+    along(points, (x, y, begins) => (begins ? context.moveTo(x, y) : context.lineTo(x, y)));
     context.stroke();
     context.globalAlpha = 1;
   }
@@ -167,14 +169,7 @@ export class SvgSurface {
 
   line(points, name, { width = 1, dash = [], alpha = 1 } = {}) {
     let path = "";
-    let broken = true;
-    for (let n = 0; n < points.length; n += 2) {
-      if (Number.isNaN(points[n + 1])) broken = true;
-      else {
-        path += `${broken ? "M" : "L"}${short(points[n])} ${short(points[n + 1])}`;
-        broken = false;
-      }
-    }
+    along(points, (x, y, begins) => (path += `${begins ? "M" : "L"}${short(x)} ${short(y)}`));
     const dashes = { ...(dash.length ? { "stroke-dasharray": dash.join(" ") } : {}), ...(alpha < 1 ? { "stroke-opacity": alpha } : {}) };
     this.into.append(node("path", { d: path, fill: "none", stroke: colour(name), "stroke-width": width, "stroke-linejoin": "round", ...dashes }));
   }

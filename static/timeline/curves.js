@@ -128,7 +128,6 @@ export function plotAll(names, on) {
   keep(on ? [...others, ...names] : others);
 }
 
-/** Plots the usual curves. */
 export function plotUsual() {
   keep(null);
 }

@@ -61,7 +61,6 @@ function wholeSpan(scene) {
   return { from: timeOf(scene.column, scene), to: scene.span.to };
 }
 
-/** Draws the timeline. */
 export function drawTimeline(surface, scene) {
   const { width, height, column, span, layout, scroll } = scene;
   surface.within(0, AXIS, width, height - AXIS, () => {

@@ -96,7 +96,6 @@ export class Lanes {
     this.clear();
   }
 
-  /** Removes everything. */
   clear() {
     this.lanes = new Map();
     this.tones = new Map(); // the names of colours by name
