@@ -10,7 +10,7 @@ import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, or
 
 const ROW = 44; // [px]; panels/runs.css has the same
 const MAX_DIGITS = 19; // of a seed: aligned to the right, texts of numbers are in the order of the numbers
-const AROUND = 6; // the number of rows drawn beyond the visible ones
+const AROUND = 12; // the number of rows drawn beyond the visible ones
 
 /** The sort keys: their column headings, and the values to compare. */
 const KEYS = {
