@@ -10,13 +10,15 @@ const open = signal([]);
 let opened = 0;
 
 /** Shows a dialog, on top of those that are open: `title`, `body` (made by `html`) and `actions` besides Cancel, [{text, kind?, value?, busy?}];
- * without any, it has the button Close. Returns the value of the chosen action, which is true by default; null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
- * with choices [{value, text}], {text, choice}. With `check` it stays open until that function has checked the result of an action and
- * returned true; the function shows itself what is wrong, and meanwhile the action's button has the text `busy`. An Error that it throws is
- * shown by `onError`; among the messages, if the user has closed the dialog. */
-export function dialog({ title, body = null, actions = [], ask = undefined, check = undefined, onError = undefined }) {
+ * without any, it has the button Close. Returns the value of the chosen action, which is true by default; null if it is closed. With `ask`
+ * {label, value, problem?, choices?} it has a text field, and the entered text is returned; with choices [{value, text}], {text, choice}. With
+ * `check` it stays open until that function has checked the result of an action and returned true; the function shows itself what is wrong, and
+ * meanwhile the action's button has the text `busy`. An Error that it throws is shown by `onError`; among the messages, if the user has closed
+ * the dialog. */
+export function dialog({ title, body = null, actions = [], ask, check, onError }) {
   opened += 1;
-  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions: [{ text: actions.length > 0 ? "Cancel" : "Close", value: null }, ...actions], ask, check, onError, resolve }]));
+  const all = [{ text: actions.length > 0 ? "Cancel" : "Close", value: null }, ...actions.map((one) => ({ value: true, ...one }))];
+  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions: all, ask, check, onError, resolve }]));
 }
 
 /** Asks for confirmation; returns whether the user agrees. */
@@ -81,7 +83,7 @@ function Dialog({ shown }) {
     try {
       return await shown.check(result);
     } catch (error) {
-      if (isOpen()) shown.onError(error);
+      if (isOpen()) await shown.onError(error);
       else notify(`${shown.title}: ${error.message}`);
       return false;
     }
@@ -96,7 +98,7 @@ function Dialog({ shown }) {
     const first = shown.actions.find(({ kind }) => kind === "primary");
     if (event.key !== "Enter" || event.target.tagName !== "INPUT" || !first) return;
     event.preventDefault();
-    done(first.value ?? true);
+    done(first.value);
   }
 
   return html`<dialog ref=${box} aria-labelledby=${id} onClose=${() => isOpen() && done(null)} onKeyDown=${press}>
@@ -113,7 +115,7 @@ function Dialog({ shown }) {
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
     )}
     <footer role="none">
-      ${shown.actions.map(({ text, value = true, kind = "", busy = "checking …" }) => html`<${Button} class=${kind} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}<//>`)}
+      ${shown.actions.map(({ text, value, kind = "", busy = "checking …" }) => html`<${Button} class=${kind} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}<//>`)}
     </footer>
   </dialog>`;
 }

@@ -11,9 +11,6 @@ export function firstWhere(list, holds, low = 0, high = list.length) {
   return low;
 }
 
-/** Returns the index of the first of ascending times that is not before a given time. */
-export const firstFrom = (times, time, low) => firstWhere(times, (one) => one >= time, low);
-
 /** Returns the same for the entries from `low` on; fast if the entry is near. */
 export function nextWhere(list, holds, low) {
   let step = 1;
@@ -23,3 +20,6 @@ export function nextWhere(list, holds, low) {
   }
   return firstWhere(list, holds, low, Math.min(low + step, list.length));
 }
+
+/** Returns the index of the first of ascending times, from `low` on, that is not before a given time. */
+export const firstFrom = (times, time, low) => firstWhere(times, (one) => one >= time, low);
