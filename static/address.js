@@ -7,6 +7,12 @@ export function addressed(name) {
   return new URLSearchParams(location.search).get(name);
 }
 
+/** The id of the panel, or of the part of the page, that this window shows alone; null for the whole page. */
+export const alone = addressed("panel");
+
+/** The id of the session that this page shows in a notebook, without what belongs to a models folder; null for the workbench itself. */
+export const embedded = addressed("session");
+
 /** Identifies this window, also after a reload. */
 export const ownName = takeName();
 

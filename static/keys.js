@@ -18,7 +18,10 @@ export function keysOf(wanted) {
   return [...permanent(), ...notes].filter(({ key, group }) => key && group === wanted);
 }
 
-export const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
+const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
+
+/** Returns whether Mod is held with a key or the pointer: Ctrl, or Cmd on a Mac. */
+export const hasMod = ({ ctrlKey, metaKey }) => (isMac ? metaKey : ctrlKey);
 
 /** Returns a key's name as on a keyboard. */
 export function keyText(key) {
@@ -78,7 +81,7 @@ export function buttonTitle({ text, key }, shown = text) {
 /** Runs the command of a key; returns whether there is one, and the page takes the key. Keys without Mod, and those of text fields, are
  * ignored while the user types. */
 function press(event) {
-  const mod = isMac ? event.metaKey : event.ctrlKey;
+  const mod = hasMod(event);
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   const shift = event.shiftKey && (event.key.length > 1 || /[a-z]/i.test(event.key)) ? "Shift+" : "";
   const bound = commandOf(`${mod ? "Mod+" : ""}${shift}${name}`);

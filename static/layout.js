@@ -1,11 +1,10 @@
 // The layout: which parts of the page are shown, how large they are, on which side, and in which window.
 
-import { addressed } from "./address.js";
+import { alone, embedded } from "./address.js";
 import { command } from "./commands.js";
 import { remembered } from "./local_storage.js";
 import { computed, effect } from "./vendor/preact.js";
 import { hasScene, session } from "./store.js";
-import { embedded } from "./windows.js";
 
 /** The parts of the page, with their titles. */
 export const AREAS = { scene: "3D view", panels: "Panels", timeline: "Timeline" };
@@ -30,11 +29,9 @@ function ofKind(name, otherwise) {
   };
 }
 
-/** Whether this is the whole page: a window of its own has one panel. */
-const isWhole = addressed("panel") === null;
-const isAreaThere = (area) => isWhole && area in AREAS && (area !== "scene" || hasWorld.value);
+const isAreaThere = (area) => alone === null && area in AREAS && (area !== "scene" || hasWorld.value);
 
-const notThere = (area) => (isWhole && area === "scene" ? "This model has no 3D view." : "This window shows one panel.");
+const notThere = (area) => (alone === null && area === "scene" ? "This model has no 3D view." : "This window shows one panel.");
 
 const ROWS = 344; // the height of the default rows of a model with a body [px]
 const LEAST = 120; // with some rows of the timeline [px]
@@ -60,17 +57,17 @@ function canCollapse(area) {
   return area === "timeline" || (hasWorld.value && !isCollapsed(area === "scene" ? "panels" : "scene"));
 }
 
-export function collapse(area) {
+function collapse(area) {
   largest.value = "";
   collapsed.value = [...collapsed.value.filter((other) => other !== area), area];
 }
 
-export function expand(area) {
+function expand(area) {
   collapsed.value = collapsed.value.filter((other) => other !== area);
 }
 
 /** Lets a part fill the page, or no longer. */
-export function maximise(area) {
+function maximise(area) {
   largest.value = maximised.value === area ? "" : area;
 }
 

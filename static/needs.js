@@ -1,10 +1,10 @@
 // What commands, keys, panels and buttons may need around the page: without it they do not exist.
 
-import { addressed } from "./address.js";
+import { embedded } from "./address.js";
 
 /** Whether this page has it. A notebook has no models folder: no files with an editor, no recordings and experiments; and its cells start and
  * end the runs. */
-const THERE = { "models folder": addressed("session") === null };
+const THERE = { "models folder": embedded === null };
 
 /** Returns whether this page has what something needs; null if it needs nothing. */
 export function isAvailable(need) {

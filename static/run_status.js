@@ -5,7 +5,7 @@ import { computed } from "./vendor/preact.js";
 import { toShowOne } from "./bar/models.js";
 import { alive as stated, connected, events, opening, period, restarted, session, state } from "./store.js";
 import { runTimeText } from "./timeline/seek.js";
-import { embedded } from "./windows.js";
+import { embedded } from "./address.js";
 
 const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "Run its cell again to start a new run.";
 const FIX = embedded === null ? "see Messages for the reason and the line. Fix it in the editor, then run it again." : "the cell shows the reason.";

@@ -88,7 +88,7 @@ function refusal(response, body) {
 
 /** Called when the user chooses something that takes a while to show; returns a function that checks whether it is still wanted:
  * of two choices in quick succession, the first may be ready last. */
-export function newChoice() {
+function newChoice() {
   choices += 1;
   return sinceNow();
 }

@@ -15,10 +15,10 @@ export const me = signal("");
 /** The newest state: status, time, speed, apertures, parameters, parts (`Session.state_json`); null before the first. */
 export const state = signal(null);
 /** The events of the run in order, each [time in us, source, kind, data], where the time is that of the run's clock also for a program
- * that makes several runs; also those after the current moment of a run that went back. `first` is the number of the first, `missing`
- * how many were dropped before it. The list grows in place. `elsewhere` says that it may end before the newest event that the server has sent:
- * a page has not room for all events of a long run, and has those around the moment to which it went back. */
-export const events = signal({ list: [], first: 0, missing: 0 });
+ * that makes several runs; also those after the current moment of a run that went back. `first` is the number of the first: the page does not
+ * have those before it. The list grows in place. `cut` says that its end was removed, `elsewhere` that it may end before the newest event that
+ * the server has sent: a page has not room for all events of a long run, and has those around the moment to which it went back. */
+export const events = signal({ list: [], first: 0 });
 /** The notices to the user: {number, level, text, file, line, detail, attempt, version}. */
 export const notices = signal([]);
 /** The message while a model is loading: {text, slow}; null otherwise. */
@@ -37,6 +37,10 @@ export const shownRecording = computed(() => session.value?.recording ?? (sessio
 export const isShared = computed(() => (session.value?.watching ?? []).some((name) => name !== me.value));
 /** The run and epoch of the newest state: until a new run sends its first state, the page shows that of the previous run. */
 const stated = signal({ run: 0, epoch: 0 });
+/** The number of the run's events up to the moment that is shown. */
+export const eventCount = computed(() => state.value?.events ?? 0);
+/** The bodies of the run's world, by name. */
+export const bodies = computed(() => session.value?.world?.bodies ?? {});
 /** Whether there is a run that can answer questions. */
 export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null && stated.value.run === session.value.run);
 /** The moment that is shown, as a text that is unique for each moment, also of a run whose past was changed. */
@@ -62,7 +66,7 @@ function takeOne(message) {
     opening.value = null;
   }
   if (message.you) me.value = message.you;
-  if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
+  if (message.run !== known.run) events.value = { list: [], first: 0 };
   Object.assign(known, { run: message.run, epoch: message.epoch });
   history.value = `${session.value?.id} ${message.run} ${message.epoch}`;
   if ("state" in message) {
@@ -86,23 +90,22 @@ export function roomForEarlier() {
 
 /** Shows other events of the run, from the number `first` on, in place of those of the list. */
 export function replaceEvents(first, list) {
-  events.value = { list, first, missing: first, cut: false, elsewhere: true };
+  events.value = { list, first, elsewhere: true };
 }
 
 /** Adds the events directly before those of the list, the latest of them if there is not room for all. */
 export function addEarlier(earlier) {
   const { list, first } = events.peek();
   const added = earlier.slice(Math.max(0, earlier.length - roomForEarlier())); // new ones have come since these were requested
-  events.value = { ...events.peek(), list: [...added, ...list], first: first - added.length, missing: first - added.length, cut: false };
+  events.value = { ...events.peek(), list: [...added, ...list], first: first - added.length, cut: false };
 }
 
-function withEvents({ list, first, missing, elsewhere = false }, news) {
+function withEvents({ list, first, elsewhere = false }, news) {
   if (news.cut !== undefined) list.length = Math.max(0, Math.min(list.length, news.cut - first));
   if (news.list.length > 0 || news.missing > 0) {
     if (list.length === 0 || news.first !== first + list.length) {
       list = [];
       first = news.first;
-      missing = news.first;
     }
     elsewhere = false;
   }
@@ -113,7 +116,7 @@ function withEvents({ list, first, missing, elsewhere = false }, news) {
     list.splice(0, drop);
     first += drop;
   }
-  return { list, first, missing, cut: news.cut !== undefined, elsewhere };
+  return { list, first, cut: news.cut !== undefined, elsewhere };
 }
 
 function addNotices(added) {
@@ -201,7 +204,7 @@ export function forget() {
   batch(() => {
     session.value = null;
     state.value = null;
-    events.value = { list: [], first: 0, missing: 0, cut: false };
+    events.value = { list: [], first: 0 };
     notices.value = [];
     stated.value = { run: 0, epoch: 0 };
     Object.assign(known, { run: 0, epoch: 0 });

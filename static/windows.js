@@ -1,6 +1,6 @@
 // Windows of their own for panels, the 3D view and the timeline: each is a page that shows the same run as the page that opened it.
 
-import { addressed, page } from "./address.js";
+import { alone, page } from "./address.js";
 import { show } from "./server.js";
 import { notify, session } from "./store.js";
 import { computed, effect } from "./vendor/preact.js";
@@ -8,12 +8,6 @@ import { computed, effect } from "./vendor/preact.js";
 const PATIENCE = 400; // how long a window waits for the page that has opened it [ms]
 const SIZES = { scene: [960, 720], timeline: [1200, 420] }; // [px]
 const USUAL = [760, 620];
-
-/** The id of the panel, or of the part of the page, that this window shows alone; null for the whole page. */
-export const alone = addressed("panel");
-
-/** The id of the session that this page shows in a notebook, without what belongs to a models folder; null for the workbench itself. */
-export const embedded = addressed("session");
 
 const channel = new BroadcastChannel("actr3d pages");
 

@@ -1,6 +1,7 @@
 // The layout: the top bar, the 3D view beside the tabs, the timeline below, and the status line; or, in a window of its own, one panel.
 
 import { html, useEffect } from "./vendor/preact.js";
+import { alone, embedded } from "./address.js";
 import { Bar } from "./bar/bar.js";
 import { Clock } from "./bar/clock.js";
 import { begin, listModels } from "./bar/models.js";
@@ -28,7 +29,7 @@ import { Timeline } from "./panels/timeline.js";
 import { hurried, notify, session } from "./store.js";
 import { show } from "./server.js";
 import { silent } from "./silence.js";
-import { alone, embedded, follow, openWindow } from "./windows.js";
+import { follow, openWindow } from "./windows.js";
 
 const MIN_SCENE = 320; // [px]
 /** What a window can show alone. */

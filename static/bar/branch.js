@@ -8,7 +8,7 @@ import { isLeft, request } from "../server.js";
 import { notify, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
 import { runTimeText } from "../timeline/seek.js";
-import { embedded } from "../windows.js";
+import { embedded } from "../address.js";
 
 /** Sends a command that changes the run; if what lies ahead would be lost, asks whether it may be. Returns whether the run was changed;
  * throws an Error with the reason if it cannot be. */

@@ -1,7 +1,7 @@
 // Chooses the model or recording to show: opens its session or starts one, and puts the choice into the page's address.
 
 import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
-import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
+import { addressed, addressedTime, alone, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
 import { exactTime, TIMES, timeText } from "../parts/units.js";
 import { AGAIN, call, connect, request, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
@@ -9,7 +9,7 @@ import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, connected, isShared, notify, running, session, shownRecording } from "../store.js";
 import { furthest, isBeyond, present, runTimeText, travel } from "../timeline/seek.js";
-import { alone, followWindows, passOn } from "../windows.js";
+import { followWindows, passOn } from "../windows.js";
 
 /** The model files of the folder that can be opened: {path, title, kind}. */
 export const models = signal([]);

@@ -8,8 +8,8 @@ import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
 import { silent } from "../silence.js";
-import { embedded } from "../windows.js";
-import { connected, me, restarted, session, state } from "../store.js";
+import { embedded } from "../address.js";
+import { connected, eventCount, me, restarted, session, state } from "../store.js";
 
 const LOST = embedded === null ? "connection lost; trying again …" : "the kernel does not answer any more: run the cell again";
 const RESTARTED = embedded === null ? "the workbench was started again: open the address that it printed" : LOST;
@@ -30,7 +30,7 @@ export function StatusLine() {
     <${Branch} />${embedded === null ? html`<${StaleRunNote} />` : null}
     <span class="if-room facts">
       ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
-      <span>${counted(state.value?.events ?? 0, "event")}</span>
+      <span>${counted(eventCount.value, "event")}</span>
       ${seed !== null && seed !== undefined ? html`<span title="The seed of the run">seed ${String(seed)}</span>` : null}
       ${notKept ? html`<span title=${notKept}>not kept</span>` : null}
       ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}

@@ -12,7 +12,7 @@ import { chooseRecording } from "./models.js";
 import { isOver, isRestarting, runStatus } from "../run_status.js";
 import { alive, notify, running, session, state } from "../store.js";
 import { sendCommandThere } from "../timeline/seek.js";
-import { embedded } from "../windows.js";
+import { embedded } from "../address.js";
 import { speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
 import { runUntil } from "./until.js";
@@ -68,7 +68,7 @@ function registeredSpeed(text, key, by, limit) {
   const isAtLimit = () => speedNumber() === limit;
   const ready = () => !isIdle("speed") && !isAtLimit();
   const why = () => (session.value && isAtLimit() ? `The speed is «${SPEEDS[limit][0]}» already.` : runStatus.value.text);
-  return command({ text, key, group: "Run", work: () => changeSpeed(by), ready, why });
+  return command({ text, key, group: "Run", work: () => setSpeed(speedNumber() + by), ready, why });
 }
 
 /** Registers a command of the run, with the id of its button. */
@@ -102,10 +102,6 @@ function speedNumber() {
 function setSpeed(number) {
   speedIsKnown.value = true;
   speed.set(SPEEDS[number][1]);
-}
-
-function changeSpeed(by) {
-  setSpeed(speedNumber() + by);
 }
 
 export function Transport() {

@@ -4,13 +4,13 @@ import { html, signal, useId } from "../vendor/preact.js";
 import { commandsOf } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
 import { TIMES, timeOfText } from "../parts/units.js";
-import { agentsOf, nameIn } from "../inspector/agents.js";
+import { agentsOf, nameIn, pathsOf, productionNames } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
-import { notify, session, state } from "../store.js";
+import { bodies, state } from "../store.js";
 import { requestThere } from "../timeline/seek.js";
 
-const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
+const TEXTS = { time: "a time", production: "a production fires", buffer: "a buffer matches", contact: "something is touched" };
 const kind = signal("time");
 const time = signal("");
 const production = signal("");
@@ -20,14 +20,7 @@ const body = signal("");
 /** Why it cannot run until then, {field, text}: the field that is wrong, null for none; null if it can. */
 const problem = signal(null);
 
-function partsThat(holds) {
-  return Object.entries(state.value?.parts ?? {}).filter(([, part]) => holds(part));
-}
-
-/** Returns the productions of all agents by name. */
-function productionNames() {
-  return [...new Set(partsThat((part) => part.is === "system").flatMap(([, part]) => part.productions))].sort();
-}
+const productions = () => productionNames(state.value?.parts).sort();
 
 /** Returns the problem with an entry, such as an invalid time or a missing name; null if it can be sent. */
 function missing() {
@@ -42,45 +35,39 @@ function problemOf({ message, field = null }) {
   return { field, text: field === null ? message : message.slice(`${field}: `.length) };
 }
 
-commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
+commandsOf(() => productions().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
 
 function wanted() {
-  switch (kind.value) {
-    case "time":
-      return { type: "until", time: timeOfText(time.value) };
-    case "production":
-      return { type: "until", production: production.value };
-    case "buffer":
-      return { type: "until", buffer: buffer.value, pattern: pattern.value };
-    default:
-      return { type: "until", contact: body.value };
-  }
+  const ends = {
+    time: { time: timeOfText(time.value) },
+    production: { production: production.value },
+    buffer: { buffer: buffer.value, pattern: pattern.value },
+    contact: { contact: body.value },
+  };
+  return { type: "until", ...ends[kind.value] };
 }
 
 /** Whether there is no production of this name any more, for example after an edit; unknown before a program has started. */
 function isLost(name) {
-  const names = productionNames();
+  const names = productions();
   return names.length > 0 && !names.includes(name);
 }
 
 /** Returns the names of the buffers as in the panel Buffers; preceded by the agent's name if there are several agents. */
 function bufferNames() {
-  const agents = agentsOf(state.value?.parts);
-  const paths = partsThat((part) => part.is === "buffer").map(([path]) => path);
+  const { parts } = state.value ?? {};
+  const agents = agentsOf(parts);
+  const paths = pathsOf(parts, "buffer");
   return agents.length === 1 ? paths.map((path) => nameIn(agents[0], path)) : paths;
 }
 
-function bodies() {
-  return Object.keys(session.value?.world?.bodies ?? {});
-}
-
-function Line({ id, text, children }) {
+function Line({ id, children }) {
   const choose = () => {
     kind.value = id;
     problem.value = null;
   };
   return html`<div class="until ${kind.value === id ? "on" : ""}">
-    <label><input type="radio" name="until" checked=${kind.value === id} onChange=${choose} /> ${text}</label>
+    <label><input type="radio" name="until" checked=${kind.value === id} onChange=${choose} /> ${TEXTS[id]}</label>
     <span onInput=${choose}>${children}</span>
     ${problem.value && kind.value === id ? html`<p class="bad" role="alert">${problem.value.text}</p>` : null}
   </div>`;
@@ -96,18 +83,18 @@ function Name({ of, field, among, label, otherwise, first }) {
 }
 
 function Body() {
-  const texts = Object.fromEntries(KINDS);
+  const touching = Object.keys(bodies.value);
   const stops = breakpoints.value;
   return html`
-    <${Line} id="time" text=${texts.time}>
+    <${Line} id="time">
       <input aria-label="Time [s]" aria-invalid=${isWrong("time")} data-first=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
-    <${Line} id="production" text=${texts.production}><${Name} of=${production} field="production" among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
-    <${Line} id="buffer" text=${texts.buffer}>
+    <${Line} id="production"><${Name} of=${production} field="production" among=${productions()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
+    <${Line} id="buffer">
       <${Name} of=${buffer} field="buffer" among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
       <input aria-label="Pattern" aria-invalid=${isWrong("pattern")} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
     <//>
-    ${bodies().length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} field="contact" among=${bodies()} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
+    ${touching.length ? html`<${Line} id="contact"><${Name} of=${body} field="contact" among=${touching} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>
     ${stops.length
       ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span>${isLost(name) ? html`<span class="quiet">not in this run</span>` : null}<button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`
@@ -117,22 +104,15 @@ function Body() {
 
 /** Asks until when to run, and runs until then; stays open, with the reason, if that is not possible. */
 export async function runUntil() {
-  const actions = [{ text: "Cancel", value: false }, { text: "Run until then", value: true, kind: "primary" }];
   problem.value = null;
-  if (kind.value === "contact" && !bodies().length) kind.value = "time";
-  let closed = false;
+  if (kind.value === "contact" && Object.keys(bodies.value).length === 0) kind.value = "time";
   async function check() {
     problem.value = missing();
     if (problem.value) return false;
-    try {
-      await requestThere(wanted());
-    } catch (error) {
-      if (!isLeft(error) && closed) notify(`Run until: ${error.message}`);
-      else if (!isLeft(error)) problem.value = problemOf(error);
-      return isLeft(error);
-    }
+    await requestThere(wanted()).catch((error) => {
+      if (!isLeft(error)) throw error;
+    });
     return true;
   }
-  await dialog({ title: "Run until", body: html`<${Body} />`, actions, check });
-  closed = true;
+  await dialog({ title: "Run until", body: html`<${Body} />`, actions: [{ text: "Run until then", kind: "primary" }], check, onError: (error) => (problem.value = problemOf(error)) });
 }

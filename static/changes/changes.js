@@ -2,7 +2,7 @@
 
 import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
-import { systemsOf } from "../inspector/agents.js";
+import { pathsOf, productionNames, systemsOf } from "../inspector/agents.js";
 import { isTooLarge, literal, TOO_LARGE } from "../parameters/values.js";
 import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
@@ -12,7 +12,7 @@ import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
 import { isOver, runStatus } from "../run_status.js";
 import { request } from "../server.js";
-import { alive, notify, session, state } from "../store.js";
+import { alive, session, state } from "../store.js";
 import { computed, html, signal, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
@@ -29,34 +29,31 @@ export function changesOf(of) {
   return changes.value.filter((one) => one.of === of);
 }
 
-/** Makes a change; returns {made, problem}: whether it is made, and why it cannot be. The user may also decide against it: then there is no problem. */
-async function make(word, named) {
-  try {
-    return { made: await change({ type: "command", word, named }), problem: null };
-  } catch (error) {
-    return { made: false, problem: error.message.replace(`${word}.`, "") }; // the form names the field alone
-  }
+/** Makes a change; returns whether it is made: the user may decide against it. Throws an Error with the reason if it cannot be. */
+function make(word, named) {
+  return change({ type: "command", word, named }).catch((error) => {
+    throw new Error(error.message.replace(`${word}.`, "")); // the form names the field alone
+  });
 }
 
 /** Returns {problem, send}: a function that makes a change and stores the problem for showing it beside; it returns whether it is made. */
 export function useChange() {
   const [problem, setProblem] = useState(null);
   const send = async (word, named) => {
-    const { made, problem: found } = await make(word, named);
-    setProblem(found);
-    return made;
+    try {
+      const made = await make(word, named);
+      setProblem(null);
+      return made;
+    } catch (error) {
+      setProblem(error.message);
+      return false;
+    }
   };
   return { problem, send, forget: () => setProblem(null) };
 }
 
-/** The units in which people give a number instead of that of the field, and by how much their numbers are larger. */
-const FOR_PEOPLE = { rad: { unit: "°", factor: 180 / Math.PI } };
-
-/** Returns [unit, factor]: the unit in which a field is asked for, and by how much numbers are larger in it. */
-function unitOf({ unit }) {
-  const { unit: shown = unit, factor = 1 } = FOR_PEOPLE[unit] ?? {};
-  return [shown, factor];
-}
+/** Returns [unit, factor]: the unit in which people give a number of a field, and by how much numbers are larger in it. */
+const unitOf = ({ unit }) => (unit === "rad" ? ["°", 180 / Math.PI] : [unit, 1]);
 
 /** Returns the value of the text of a field: {value}, null for an empty number; or {problem}. */
 function read(field, text) {
@@ -74,16 +71,14 @@ function read(field, text) {
   }
 }
 
-const pathsOf = (kind) => Object.entries(state.value?.parts ?? {}).flatMap(([path, { is }]) => (is === kind ? [path] : []));
-
 /** The values among which a field is chosen, by its name; a field `name` has the name of what the change is of. */
 const CHOICES = {
   aperture: () => Object.keys(session.value?.world?.widths ?? {}),
   object: () => session.value?.world?.objects ?? [],
-  buffer: () => pathsOf("buffer"),
-  memory: () => pathsOf("memory"),
+  buffer: () => pathsOf(state.value?.parts, "buffer"),
+  memory: () => pathsOf(state.value?.parts, "memory"),
   system: () => systemsOf(state.value?.parts),
-  production: () => [...new Set(systemsOf(state.value?.parts).flatMap((system) => state.value.parts[system].productions))],
+  production: () => productionNames(state.value?.parts),
 };
 
 const choicesOf = ({ name }, of) => CHOICES[name === "name" ? of : name]?.() ?? [];
@@ -128,7 +123,6 @@ export async function askAndMake(one, given = {}) {
   const values = { ...first };
   const problem = signal(null);
   const known = signal({}); // the present values of what is chosen, by field: exact, and as they are shown
-  let closed = false;
   async function choose() {
     const named = { ...given, ...Object.fromEntries(fields.flatMap(({ name }) => (choices[name].length ? [[name, values[name]]] : []))) };
     const found = await request({ type: "present", word: one.word, named }).catch(() => ({})); // the form can do without
@@ -149,14 +143,10 @@ export async function askAndMake(one, given = {}) {
       if (wrong) return false;
       if (value !== null || field.required) named[field.name] = value;
     }
-    const { made, problem: found } = await make(one.word, named);
-    problem.value = found;
-    if (closed && found) notify(`${one.title}: ${found}`);
-    return made;
+    return make(one.word, named);
   };
   choose();
-  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
-  closed = true;
+  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: one.title, kind: "primary" }], check, onError: (error) => (problem.value = error.message) });
 }
 
 commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title} …`, group: `Change by hand: ${one.of}`, work: () => askAndMake(one), ready: () => !noChange.value, why: () => noChange.value })) : []));
@@ -165,9 +155,9 @@ commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title
 const needsMore = (one, given) => one.fields.some(({ name, required }) => required && !(name in given));
 
 /** The buttons for all changes of a thing: one that needs nothing else is made at once, others ask for the rest. */
-export function ChangeButtons({ of, given, without = [] }) {
+export function ChangeButtons({ of, given }) {
   const { problem, send } = useChange();
-  const list = changesOf(of).filter(({ word }) => !without.includes(word));
+  const list = changesOf(of);
   if (list.length === 0) return null;
   const act = (one) => (needsMore(one, given) ? askAndMake(one, given) : send(one.word, given));
   return html`<span class="change-buttons">

@@ -16,7 +16,7 @@ function latest() {
 
 /** Whether there may be a change to undo: one that is known, or one that is no longer kept here. */
 function canUndo() {
-  return alive.value && changes.value.length > 0 && (latest() !== undefined || events.value.missing > 0);
+  return alive.value && changes.value.length > 0 && (latest() !== undefined || events.value.first > 0);
 }
 
 command({

@@ -3,6 +3,7 @@
 import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { buttonTitle } from "../keys.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { call } from "../server.js";
 import { shownRecording } from "../store.js";
 import { beginningText, ownName } from "../runs/wording.js";
@@ -45,7 +46,7 @@ function Head({ runs }) {
 }
 
 function Contents({ answer, waiting, error, kinds }) {
-  if (error) return html`<p class="problem bad" role="alert">They cannot be compared: ${error}</p>`;
+  if (error) return html`<${Problem} text=${`They cannot be compared: ${error}`} />`;
   if (!answer) return html`<p class="empty" role="status"><progress aria-label="Comparing"></progress> Comparing …</p>`;
   const [one, other] = answer.runs;
   return html`<div class="compare-parts" aria-busy=${waiting}>

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Plot } from "../parts/plot.js";
+import { Problem } from "../parts/problem.js";
 import { toggled } from "../parts/toggled.js";
 import { call, recordingPath } from "../server.js";
 import { beginningText, nameOf } from "../runs/wording.js";
@@ -16,10 +17,6 @@ const DASHES = [null, [6, 3]];
 
 function query(names) {
   return names.map((name) => `name=${encodeURIComponent(name)}`).join("&");
-}
-
-async function read(run, names) {
-  return call("GET", `${recordingPath(run.id)}/curves?most=${MAX_MOMENTS}&${query(names)}`);
 }
 
 /** Returns the joint that moves most; undefined if there is none. */
@@ -64,7 +61,7 @@ function useCurves(runs) {
     async function complete(run) {
       const missing = chosen.value.filter((name) => !samples.value[`${run.id} ${name}`]);
       if (missing.length === 0) return;
-      const { times, curves, events } = await read(run, missing);
+      const { times, curves, events } = await call("GET", `${recordingPath(run.id)}/curves?most=${MAX_MOMENTS}&${query(missing)}`);
       if (over) return;
       const more = missing.map((name) => [`${run.id} ${name}`, events[name] ?? { times, values: curves[name] ?? [] }]);
       samples.value = { ...samples.value, ...Object.fromEntries(more) };
@@ -118,7 +115,7 @@ export function Curves({ runs }) {
   const span = { from: 0, to: Math.max(0.01, ...runs.map(({ time }) => time)) };
   return html`<section class="overlaid" aria-label="Curves">
     <header><h3>Curves</h3>${known?.length ? html`<${Choice} known=${known} chosen=${chosen} />` : null}</header>
-    ${error ? html`<p class="problem bad" role="alert">The curves cannot be read: ${error}</p>` : null}
+    <${Problem} text=${error && `The curves cannot be read: ${error}`} />
     ${!known && !error ? html`<p class="waiting quiet" role="status"><progress aria-label="Reading"></progress> Reading the curves …</p>` : null}
     ${known?.length === 0 ? html`<p class="empty">Neither run has numbers over time.</p>` : null}
     ${known && known.length > 0 && chosen.value.length === 0 ? html`<p class="empty">Add a curve to see both runs over one another.</p>` : null}

@@ -4,6 +4,7 @@ import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { eventText, eventTimeText, eventValues } from "../inspector/event_text.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
+import { useSize } from "../parts/size.js";
 import { timeText } from "../parts/units.js";
 import { GROUPS } from "../trace_kinds.js";
 
@@ -72,17 +73,12 @@ function Rows({ difference }) {
   const rest = Array.from({ length: Math.max(after[0].length, after[1].length) }, (_, n) => [after[0][n], after[1][n]]);
   const over = "no more events";
   const box = useRef(null);
+  const { height } = useSize(box);
   // The first difference is in sight, also in a smaller window.
   useLayoutEffect(() => {
-    const show = () => {
-      const here = box.current.querySelector(".here");
-      box.current.scrollTop = here.offsetTop - (box.current.clientHeight - here.offsetHeight) / 2;
-    };
-    show();
-    const watch = new ResizeObserver(() => box.current && show());
-    watch.observe(box.current);
-    return () => watch.disconnect();
-  }, [difference]);
+    const here = box.current.querySelector(".here");
+    box.current.scrollTop = here.offsetTop - (box.current.clientHeight - here.offsetHeight) / 2;
+  }, [difference, height]);
   return html`<div class="parting" ref=${box} tabindex="0" role="region" aria-label="Events side by side"><table aria-label="Events around the first difference">
     <thead><tr>${["first", "second"].map((side) => html`<th class="number" scope="col"><span class="dot ${side}"></span>time</th><th scope="col">source</th><th scope="col">event</th>`)}</tr></thead>
     <tbody>

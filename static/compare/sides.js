@@ -1,7 +1,7 @@
 // The settings and results of two runs in two columns, and the difference of their models' texts.
 
 import { html } from "../vendor/preact.js";
-import { timeText } from "../parts/units.js";
+import { nameWithUnit, timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { runs as recordings } from "../runs/list.js";
 import { courseText, endedText, labelOf, measureText, originText, ownName, sizeText, whenText } from "../runs/wording.js";
@@ -48,7 +48,7 @@ function parameterRows(runs, changed, units) {
   const names = [...new Set([...namesOf(runs, "parameters"), ...changed.flatMap(Object.keys)])];
   return names.map((name) => {
     const [one, other] = runs.map((run, n) => changesText(run.parameters?.[name], changed[n][name]));
-    return [units[name] ? `${name} [${units[name]}]` : name, one, other, one !== other];
+    return [nameWithUnit(name, units[name]), one, other, one !== other];
   });
 }
 

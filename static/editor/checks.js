@@ -60,7 +60,7 @@ function mark(document, doc, problems, { reveals = false } = {}) {
 const taken = new WeakMap();
 
 /** Marks the present notices in the open texts; removes the marks of others. */
-export const ending = effect(() => {
+effect(() => {
   const { id } = session.value ?? {};
   const present = new Map(notices.value.filter(isPresent).map((notice) => [`${id} ${notice.number}`, notice]));
   const open = [...documents.value.values()];

@@ -32,7 +32,7 @@ import {
   searchKeymap,
 } from "../vendor/codemirror.js";
 import { codeTheme } from "./code_theme.js";
-import { isMac } from "../keys.js";
+import { hasMod } from "../keys.js";
 import { marking } from "./marks.js";
 import { assist, warm } from "./assist.js";
 import { shownText } from "./language.js";
@@ -97,7 +97,7 @@ const EXTENSIONS = [
   EditorView.clickAddsSelectionRange.of((event) => event.altKey), // Ctrl and click goes to a definition
   EditorView.domEventHandlers({
     mousedown(event, view) {
-      const at = (isMac ? event.metaKey : event.ctrlKey) && event.button === 0 ? view.posAtCoords({ x: event.clientX, y: event.clientY }) : null;
+      const at = hasMod(event) && event.button === 0 ? view.posAtCoords({ x: event.clientX, y: event.clientY }) : null;
       if (at === null) return false;
       view.dispatch({ selection: EditorSelection.cursor(at) });
       keys.define();
@@ -182,9 +182,8 @@ function taken(transactions, by) {
 
 /** Moves to a line of the text that is shown. */
 export function goToLine(line) {
-  const place = view.state.doc.line(Math.max(1, Math.min(line, view.state.doc.lines)));
-  view.dispatch({ selection: EditorSelection.cursor(place.from), effects: EditorView.scrollIntoView(place.from, { y: "center" }) });
-  focusText();
+  const { doc } = view.state;
+  goToPosition(doc.line(Math.max(1, Math.min(line, doc.lines))).from);
 }
 
 /** Moves the cursor to a position of the text that is shown. */

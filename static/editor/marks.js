@@ -9,7 +9,7 @@ const putMarks = StateEffect.define();
 
 /** The marks of a text: {origin, level, message, detail, from, to}; `from` is null for marks without a line. Those of a run have the
  * `keys` of their notices. */
-const marksField = StateField.define({
+export const marking = StateField.define({
   create: () => [],
   update(marks, transaction) {
     let now = marks;
@@ -46,8 +46,6 @@ function start(line) {
   return line.from + (line.text.length - line.text.trimStart().length);
 }
 
-export const marking = marksField;
-
 /** Whether there are more details than the message. */
 export const hasMore = ({ message, detail }) => detail.trim().includes("\n") && detail.trim() !== message.trim();
 
@@ -65,7 +63,7 @@ function distinct(all) {
 
 /** Returns the marks of a state, with their line numbers, ordered by position. */
 export function marksOf(state) {
-  return distinct(state.field(marksField))
+  return distinct(state.field(marking))
     .map((mark) => ({ ...mark, line: mark.from === null ? null : state.doc.lineAt(mark.from).number }))
     .sort((one, other) => (one.line ?? 0) - (other.line ?? 0));
 }
@@ -80,14 +78,14 @@ export function markAt(doc, origin, { level, message, detail = "", line }) {
 /** Returns the transaction that adds marks of an origin to a state. */
 export function withMarks(state, origin, marks) {
   const list = origin === "run" ? marks.slice(-MAX_RUN) : marks;
-  const all = [...state.field(marksField).filter((mark) => mark.origin !== origin), ...list];
+  const all = [...state.field(marking).filter((mark) => mark.origin !== origin), ...list];
   const shown = setDiagnostics(state, diagnostics(all));
   return { ...shown, effects: [shown.effects ?? [], putMarks.of({ origin, marks: list })].flat() };
 }
 
 /** Returns the transaction that shows the remaining marks after others were removed. */
 export function sameMarks(state) {
-  return setDiagnostics(state, diagnostics(state.field(marksField)));
+  return setDiagnostics(state, diagnostics(state.field(marking)));
 }
 
 function diagnostics(marks) {

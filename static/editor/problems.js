@@ -6,7 +6,6 @@ import { counted } from "../parts/count.js";
 import { Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
 import { goToLine } from "./code.js";
-import { hasMore } from "./marks.js";
 
 const folded = remembered("problems folded", false);
 const SIGNS = { error: "✕", warning: "▲", info: "●" }; // the worst first
@@ -41,6 +40,6 @@ function Problem({ mark }) {
       <span class="text">${message}</span>
       ${origin === "run" ? html`<span class="quiet">the run</span>` : null}
     <//>
-    ${hasMore(mark) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
+    <${Traceback} message=${message} detail=${detail} />
   </li>`;
 }

@@ -2,7 +2,7 @@
 
 import { cut, widthOf } from "../parts/surface.js";
 import { seriesColour } from "../parts/curve.js";
-import { numberText, roundRange, stepFor, ticks } from "../parts/ticks.js";
+import { roundRange, scaleText, stepFor, ticks } from "../parts/ticks.js";
 import { valueText } from "../parts/chunk.js";
 
 const LEFT = 52; // the width of the scale [px]
@@ -62,15 +62,11 @@ export function drawFigure(surface, lines, { box, levels, range, xOf, yOf, room 
   for (const value of ticks(range[0], range[1], step)) {
     const y = Math.round(yOf(value)) + 0.5;
     surface.line([box.x, y, box.x + box.width, y], "line");
-    surface.text(shortText(value), box.x - 6, y, "quiet", { size: 10, anchor: "end" });
+    surface.text(scaleText(value), box.x - 6, y, "quiet", { size: 10, anchor: "end" });
   }
   drawAxis(surface, box, levels, xOf, room);
   surface.text(cut(name, box.width), box.x + box.width / 2, box.y + box.height + 25, "quiet", { size: 11, anchor: "middle" });
   for (const line of lines) drawLine(surface, line, xOf, yOf);
-}
-
-function shortText(value) {
-  return numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
 }
 
 function drawAxis(surface, box, levels, xOf, room) {

@@ -5,6 +5,7 @@ import { Button } from "../parts/button.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
@@ -118,7 +119,7 @@ export function Experiment() {
       <${Actions} experiment=${experiment} />
     </div>
     <${Progress} experiment=${experiment} />
-    ${problem.value ? html`<p class="problem bad" role="alert">The state of the experiment is not known: ${problem.value}</p>` : null}
+    <${Problem} text=${problem.value && `The state of the experiment is not known: ${problem.value}`} />
     ${experiment.problem ? html`<pre class="trouble" role="alert">${experiment.problem}</pre>` : null}
     <div class="contents"><${Parts} experiment=${experiment} /><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} error=${error} /></div>
   `;

@@ -9,6 +9,7 @@ import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
 import { CanvasSurface, scaled, wrapped } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
+import { valueWithUnit } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { dark } from "../theme.js";
 import { usePolled } from "./polling.js";
@@ -197,7 +198,7 @@ function Sample({ line }) {
 function pointText({ at, mean, error, participants, trials }, { x, unit }, line) {
   const bars = error === null ? "" : ` ± ${numberText(error)}`;
   const of = `${counted(participants, "participant")}, ${counted(trials, "trial")}`;
-  return `${columnText(x)} ${valueText(at[0])}${line.name ? ` · ${line.name}` : ""}${line.dashed ? " · the other experiment" : ""}: ${numberText(mean)}${bars}${unit === "°" ? "°" : unit ? ` ${unit}` : ""} (${of})`;
+  return `${columnText(x)} ${valueText(at[0])}${line.name ? ` · ${line.name}` : ""}${line.dashed ? " · the other experiment" : ""}: ${valueWithUnit(`${numberText(mean)}${bars}`, unit)} (${of})`;
 }
 
 function Plot({ lines, known, about, children }) {

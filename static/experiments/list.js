@@ -47,7 +47,6 @@ export const canMakeReport = (one) => one.done > 0 && !isRunning(one);
 
 let asked = 0;
 
-/** Reads the list. */
 export async function listExperiments() {
   asked += 1;
   const mine = asked;

@@ -5,6 +5,7 @@ import { remembered } from "../local_storage.js";
 import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { plain, Prose } from "../parts/prose.js";
 import { AGAIN, call } from "../server.js";
 import { notify, session } from "../store.js";
@@ -81,42 +82,37 @@ function useDesignFacts(design) {
   return current();
 }
 
-/** Checks what was changed in the server when the user pauses; returns {error, waiting}: what is wrong, or null. */
-function useCheck(request, problem) {
-  const found = useSignal({ of: "", error: null });
-  const key = JSON.stringify({ ...request, workers: undefined });
-  const changed = Object.keys(request.texts).length > 0 || request.participants !== undefined || request.trials !== undefined;
+/** Asks the server about a design when the user pauses, if that `isWanted`; returns {answer, error} of this question, null before it is answered. */
+function useChecked(question, isWanted) {
+  const found = useSignal({ of: "", result: null });
+  const key = JSON.stringify(question);
   useEffect(() => {
-    if (!changed || problem) return undefined;
+    if (!isWanted) return undefined;
     const leave = new AbortController();
     const timer = setTimeout(() => {
-      call("POST", "/api/designs/check", JSON.parse(key), leave.signal)
-        .then(() => (found.value = { of: key, error: null }))
-        .catch((error) => !leave.signal.aborted && (found.value = { of: key, error: error.message }));
+      call("POST", "/api/designs/check", question, leave.signal)
+        .then((answer) => (found.value = { of: key, result: { answer, error: null } }))
+        .catch((error) => !leave.signal.aborted && (found.value = { of: key, result: { answer: null, error: error.message } }));
     }, TYPING_PAUSE);
     return () => (clearTimeout(timer), leave.abort());
-  }, [key, changed, problem]);
-  const isChecked = found.value.of === key;
-  return { error: isChecked ? found.value.error : null, waiting: changed && !problem && !isChecked };
+  }, [key, isWanted]);
+  return found.value.of === key ? found.value.result : null;
 }
 
-/** Measures how long a trial takes with the values that were changed, when the user pauses; returns {seconds, error}. Without any, it is
- * `usual`, that of the design. */
+/** Checks what was changed; returns {error, waiting}: what is wrong, or null. */
+function useCheck(request, problem) {
+  const isChanged = Object.keys(request.texts).length > 0 || request.participants !== undefined || request.trials !== undefined;
+  const isWanted = isChanged && !problem;
+  const checked = useChecked({ ...request, workers: undefined }, isWanted);
+  return { error: checked?.error ?? null, waiting: isWanted && checked === null };
+}
+
+/** Measures how long a trial takes with the values that were changed; returns {seconds, error}. Without any, it is `usual`, that of the design. */
 function useDuration({ design, texts }, problem, usual) {
-  const found = useSignal({ of: "", seconds: null, error: null });
-  const key = usual.facts && Object.keys(texts).length > 0 ? JSON.stringify({ design, texts, trial: true }) : "";
-  useEffect(() => {
-    if (!key || problem) return undefined;
-    const leave = new AbortController();
-    const timer = setTimeout(() => {
-      call("POST", "/api/designs/check", JSON.parse(key), leave.signal)
-        .then((answer) => (found.value = { of: key, ...measured(answer) }))
-        .catch((error) => !leave.signal.aborted && (found.value = { of: key, seconds: null, error: error.message }));
-    }, TYPING_PAUSE);
-    return () => (clearTimeout(timer), leave.abort());
-  }, [key, problem]);
-  if (!key) return usual;
-  return found.value.of === key ? found.value : { seconds: null, error: null };
+  const isChanged = usual.facts !== null && Object.keys(texts).length > 0;
+  const checked = useChecked({ design, texts, trial: true }, isChanged && !problem);
+  if (!isChanged) return usual;
+  return checked?.answer ? measured(checked.answer) : { seconds: null, error: checked?.error ?? null };
 }
 
 function DesignChoice({ design, choose }) {
@@ -293,7 +289,7 @@ export function NewExperiment() {
       <button class="bare" title="All experiments" onClick=${() => (shown.value = "")}><span class="back"><${Icon} name="right" /></span>Experiments</button>
       ${known.value ? html`<${DesignChoice} design=${design} choose=${choose} />` : null}
     </div>
-    ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
+    <${Problem} text=${problem.value && `The designs cannot be listed: ${problem.value}`} />
     ${chosen
       ? html`<${Entry} key=${design} design=${design} description=${chosen.description} usual=${usual} />`
       : html`<div class="new">${problem.value ? null : html`<p class="late" role="status">Reading the designs …</p>`}</div>`}

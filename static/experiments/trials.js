@@ -4,6 +4,7 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { usePolled } from "./polling.js";
 import { isOpen, openTrial, pathOf, waitOf, where } from "./list.js";
 import { cellText, columnText, headText } from "./wording.js";
@@ -79,7 +80,7 @@ export function Trials({ experiment, facts }) {
       </span>
     </div>
     <div class="part">
-      ${error ? html`<p class="problem bad" role="alert">The trials cannot be read: ${error}</p>` : null}
+      <${Problem} text=${error && `The trials cannot be read: ${error}`} />
       <div class="trials" aria-busy=${waiting}>
         ${answer?.rows.length > 0
           ? html`<table aria-label="Trials">

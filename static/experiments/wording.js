@@ -3,6 +3,7 @@
 import { literal } from "../parameters/values.js";
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
+import { nameWithUnit } from "../parts/units.js";
 import { labelOf, whenText } from "../runs/wording.js";
 
 const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };
@@ -16,7 +17,7 @@ export const stateText = ({ state }) => STATES[state] ?? state;
 export const columnText = (name) => (name === "wall_s" ? "computing time" : labelOf(name));
 
 /** Returns the name of a column with its unit, if it has one. */
-export const headText = ({ name, unit }) => `${columnText(name)}${unit ? ` [${unit}]` : ""}`;
+export const headText = ({ name, unit }) => nameWithUnit(columnText(name), unit);
 
 /** Returns a value of a column; participants of an only group have their number. */
 export function cellText(name, value, { groups }) {
@@ -57,13 +58,11 @@ function levelText(level) {
 
 export const levelsText = (levels) => levels.map(levelText).join(", ");
 
-const UNLIMITED = { levels: Infinity, characters: Infinity };
-
 /** Returns the levels that a text lists, separated by commas, the text of each, and what is wrong: {levels, texts, problem}; either what
  * is wrong is null, or the others are. Texts may be in quotes.
  *
- * @param most The greatest number of levels, and of characters of a level, that the server takes. */
-export function readLevels(text, most = UNLIMITED) {
+ * @param most The greatest number of `levels`, and of `characters` of a level, that the server takes. */
+export function readLevels(text, most) {
   const none = { levels: null, texts: null };
   const wrong = (problem) => ({ ...none, problem: `${problem} (got '${text}')` });
   const parts = [""];

@@ -5,7 +5,7 @@ import { useAnswer } from "../parts/answer.js";
 import { Icon } from "../parts/icon.js";
 import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
-import { session } from "../store.js";
+import { bodies } from "../store.js";
 import { Retina } from "./retina.js";
 
 const overScene = remembered("retina", innerWidth >= 900);
@@ -13,7 +13,7 @@ const overEyesView = signal(false); // there it would cover a part of the same p
 
 /** Returns the bodies of the run that have an eye. */
 export function bodiesWithEye() {
-  return Object.entries(session.value?.world?.bodies ?? {}).filter(([, { eye: name }]) => name).map(([body]) => body);
+  return Object.entries(bodies.value).filter(([, { eye: name }]) => name).map(([body]) => body);
 }
 
 export function RetinaInset({ through }) {

@@ -2,6 +2,7 @@
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
+import { useSize } from "../parts/size.js";
 import { dark } from "../theme.js";
 import { drawView, extentAt } from "./drawing.js";
 
@@ -18,15 +19,8 @@ export function Retina({ view, pointed = null }) {
   const canvas = useRef(null);
   const [under, setUnder] = useState(null);
   const isDark = dark.value;
-  const draw = () => drawView(canvas.current, view, isDark, pointed ?? under?.[1]);
-  const newest = useRef(draw);
-  newest.current = draw;
-  useLayoutEffect(draw, [view, isDark, under, pointed]);
-  useLayoutEffect(() => {
-    const watcher = new ResizeObserver(() => newest.current());
-    watcher.observe(canvas.current);
-    return () => watcher.disconnect();
-  }, []);
+  const { width, height } = useSize(canvas);
+  useLayoutEffect(() => drawView(canvas.current, view, isDark, pointed ?? under?.[1]), [view, isDark, under, pointed, width, height]);
 
   function point(event) {
     const box = canvas.current.getBoundingClientRect();

@@ -1,12 +1,10 @@
 // What flows between the productions, buffers and modules of a run, as its events show it.
 
-import { agentOf, agentsOf } from "../inspector/agents.js";
-import { events, state, history } from "../store.js";
+import { agentOf, agentsOf, productionKey } from "../inspector/agents.js";
+import { eventCount, events, history, state } from "../store.js";
 
 const ENDS = new Set(["conflict", "fire", "initialize"]); // what follows is no longer the work of the production that has fired
 const OWN = new Set(["buffer", "state", "request", "productions", "select", "add", "output"]); // these say nothing of where a buffer's content comes from
-
-export const keyOf = (system, production) => `${system}\n${production}`;
 
 /** What an agent does at a moment. */
 class Doing {
@@ -46,7 +44,7 @@ class Known {
     if (doing.fired && time !== doing.fired[1]) doing.fired = null;
     if (ENDS.has(kind)) {
       doing.begins = kind === "initialize";
-      doing.fired = kind === "fire" ? [keyOf(source, data.production), time] : null;
+      doing.fired = kind === "fire" ? [productionKey(source, data.production), time] : null;
       doing.group(time);
       return;
     }
@@ -61,7 +59,7 @@ class Known {
     if (doing.modules.size === 1) for (const buffer of doing.buffers) add(this.feeds, [...doing.modules][0], buffer);
   }
 
-  /** Returns the paths of the buffers that a production (`keyOf`) has changed, and of the modules that it has asked. A module that is
+  /** Returns the paths of the buffers that a production (`productionKey`) has changed, and of the modules that it has asked. A module that is
    * asked may empty the buffer that it will fill: that is not the production's own work. */
   changedBy(production) {
     const written = this.#writes.get(production) ?? new Set();
@@ -91,11 +89,11 @@ export function flows() {
   return known;
 }
 
-/** Returns what has happened within the last tick up to the present moment: {fired, answered}, the production that has fired, as `keyOf`,
+/** Returns what has happened within the last tick up to the present moment: {fired, answered}, the production that has fired, as `productionKey`,
  * and the modules that have filled buffers; by system, if `belongs` says that a source belongs to it. */
 export function justNow(period, belongs) {
   const { list, first } = events.value;
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const since = Math.round(((state.value?.time ?? 0) - period) * 1e6);
   let fired = null;
   const answered = new Set();
@@ -103,7 +101,7 @@ export function justNow(period, belongs) {
     const [time, source, kind, data] = list[n];
     if (time <= since) break;
     if (!belongs(source)) continue;
-    if (kind === "fire") fired ??= keyOf(source, data.production);
+    if (kind === "fire") fired ??= productionKey(source, data.production);
     else if (!OWN.has(kind) && !ENDS.has(kind)) answered.add(source);
   }
   return { fired, answered };

@@ -14,7 +14,7 @@ function spread(count, height, whole) {
 }
 
 /**
- * Returns {width, height, nodes}, with the place of each node by its id: {x, y, width, height}.
+ * Returns {width, height, nodes, heads}, with the place of each node by its id, {x, y, width, height}, and where the columns begin.
  *
  * @param width The width of the page's part [px].
  * @param columns The ids of modules, buffers and productions.
@@ -25,12 +25,14 @@ export function placed(width, [modules, buffers, productions]) {
   const widths = SHARES.map((share) => Math.min(WIDEST, Math.floor(share * width)));
   const between = Math.min(240, (width - widths.reduce((sum, one) => sum + one, 0)) / 2);
   const nodes = new Map();
+  const heads = [];
   let x = 0;
   [[modules, BOX], [buffers, BOX], [productions, ROW]].forEach(([ids, height], n) => {
+    heads.push(x);
     spread(ids.length, height, whole).forEach((place, m) => nodes.set(ids[m], { x, width: widths[n], ...place }));
     x += widths[n] + between;
   });
-  return { width: x - between, height: HEAD + whole, nodes, heads: SHARES.map((_, n) => widths.slice(0, n).reduce((sum, one) => sum + one + between, 0)) };
+  return { width: x - between, height: HEAD + whole, nodes, heads };
 }
 
 /** Returns the path of an edge between two places, for SVG: from the facing sides, or past a column between them. `offset` moves its

@@ -1,9 +1,16 @@
 // Groups a state's tree of `parts` by agent.
 
-/** Returns the paths of the production systems, in the order of the tree. */
-export function systemsOf(parts) {
-  return Object.keys(parts ?? {}).filter((path) => parts[path].is === "system");
-}
+/** Returns the paths of the parts of a kind, in the order of the tree. */
+export const pathsOf = (parts, kind) => Object.keys(parts ?? {}).filter((path) => parts[path].is === kind);
+
+/** Returns the paths of the production systems. */
+export const systemsOf = (parts) => pathsOf(parts, "system");
+
+/** Returns the names of the productions of all systems, each once. */
+export const productionNames = (parts) => [...new Set(systemsOf(parts).flatMap((path) => parts[path].productions))];
+
+/** Returns a text that identifies a production among those of all systems. */
+export const productionKey = (system, name) => `${system}\n${name}`;
 
 /** Whether a part is below another in the tree; the first run's top model is `top`, which is omitted from its parts' paths. */
 export function isBelow(path, above) {

@@ -3,9 +3,9 @@
 import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
 import { chosenText, isGone, nothingYet } from "../run_status.js";
-import { running, state } from "../store.js";
+import { eventCount, running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
-import { at, production, shownReasons } from "./explanation.js";
+import { at, explainProduction } from "./explanation.js";
 import { eventMomentText, pairs } from "./event_text.js";
 import { fixed } from "./part_names.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
@@ -16,7 +16,8 @@ const isChoice = ([, , kind, data]) => kind === "select" || kind === "fire" || k
 function lastCycles(filtered, end, time) {
   const cycles = new Map();
   const after = new Map(); // the events after the conflict, by system
-  for (let n = filtered.below(end) - 1; n >= 0 && n > filtered.below(end) - 2000; n -= 1) {
+  const last = filtered.below(end) - 1;
+  for (let n = last; n >= 0 && n > last - 1999; n -= 1) {
     const [when, source, kind, data] = eventAt(filtered.numbers[n]);
     if (cycles.has(source) || (time !== null && when > time)) continue;
     if (kind === "conflict") cycles.set(source, { source, time: when, conflict: data, ...after.get(source) });
@@ -68,7 +69,7 @@ function Cycle({ cycle, agents }) {
           ${rows.map(
             (row) => html`<tr key=${row.name} class=${row.chosen ? "selected" : ""}>
               <td class="sign">${row.chosen ? html`<span role="img" aria-label="chosen">▸</span>` : ""}</td>
-              <td><button class="link mono" onClick=${() => ((production.value = { system: source, name: row.name }), (shownReasons.value = "why"))}>${row.name}</button></td>
+              <td><button class="link mono" onClick=${() => explainProduction(source, row.name)}>${row.name}</button></td>
               <td class="number">${fixed(row.utility)}</td>
               ${names.length && !own ? html`<td class="number">${fixed(row.base)}</td>` : null}
               ${names.map((name) => html`<td key=${name} class="number">${row.parts[name] === undefined ? "" : fixed(row.parts[name])}</td>`)}
@@ -85,7 +86,7 @@ function Cycle({ cycle, agents }) {
 export function ConflictSets() {
   const filtered = useEventFilter(isChoice, "choices");
   const agents = agentsOf(state.value?.parts);
-  const cycles = lastCycles(filtered, at.value === null ? (state.value?.events ?? 0) : Infinity, at.value === null ? null : at.value * 1e6);
+  const cycles = lastCycles(filtered, at.value === null ? eventCount.value : Infinity, at.value === null ? null : at.value * 1e6);
   if (cycles.length === 0) return isGone.value ? null : html`<p class="empty">${nothingYet("No production has matched in this run.")}</p>`;
   return html`${cycles.map((cycle) => html`<${Cycle} key=${cycle.source} cycle=${cycle} agents=${agents} />`)}`;
 }

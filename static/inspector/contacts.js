@@ -1,7 +1,7 @@
 // Contacts of a body as rows of the trace: the recording has no event for them, so the page computes them from the curves.
 
 import { contacts as contactCurves } from "../timeline/curves.js";
-import { firstWhere } from "../timeline/search.js";
+import { firstWhere } from "../parts/search.js";
 import { eventAt, placeToRead } from "./event_filter.js";
 
 /** Returns contacts as events, in order: the start of each, the body, the force and the duration. */

@@ -2,7 +2,7 @@
 
 import { useMemo } from "../vendor/preact.js";
 import { events } from "../store.js";
-import { firstWhere } from "../timeline/search.js";
+import { firstWhere } from "../parts/search.js";
 
 export class EventFilter {
   /** @param takes Returns whether an event is wanted. */

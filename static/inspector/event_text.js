@@ -6,7 +6,6 @@ import { commandText, isOfUser } from "../timeline/commands.js";
 import { furthest, runTimeText } from "../timeline/seek.js";
 import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
-
 /** The groups of events in the trace's filter: {id, text, kinds, first: whether they are shown by default}. The page itself adds contacts. */
 export const GROUPS = REGISTERED.map((group) => (group.id === "result" ? { ...group, text: "Contacts and results", kinds: ["contact", ...group.kinds] } : group));
 

@@ -17,6 +17,12 @@ effect(() => {
   at.value = null;
 });
 
+/** Explains why a production matches or not. */
+export function explainProduction(system, name) {
+  production.value = { system, name };
+  shownReasons.value = "why";
+}
+
 /** The question sent to the run. */
 export const question = computed(() => (at.value === null ? { type: "explain" } : { type: "explain", at: at.value }));
 
@@ -35,8 +41,5 @@ export function askWhy(number) {
     }
   }
   at.value = moment / 1e6;
-  if (data.production) {
-    production.value = { system: source, name: data.production };
-    shownReasons.value = "why";
-  }
+  if (data.production) explainProduction(source, data.production);
 }

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { requestText, valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { chosenText } from "../run_status.js";
-import { state } from "../store.js";
+import { eventCount } from "../store.js";
 import { eventMomentText, pairs } from "./event_text.js";
 import { Flash } from "./flash.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
@@ -14,7 +14,7 @@ export function useRequests(paths) {
   const filtered = useEventFilter((event) => event[2] === "request", "requests");
   const found = new Map();
   const wanted = new Set(paths);
-  for (let n = filtered.below(state.value?.events ?? 0) - 1; n >= 0 && wanted.size > 0; n -= 1) {
+  for (let n = filtered.below(eventCount.value) - 1; n >= 0 && wanted.size > 0; n -= 1) {
     const event = eventAt(filtered.numbers[n]);
     if (wanted.delete(event[1])) found.set(event[1], event);
   }
@@ -28,7 +28,7 @@ function waitingText([time, , , data]) {
 }
 
 /** Returns the status of a part: what it waits for, which production is about to fire, how many chunks it has. */
-export function doing(part, request) {
+function doing(part, request) {
   if (part.is === "system") return part.chosen ? `${part.chosen} ${chosenText()}` : "nothing matches";
   if (part.state?.busy === true) {
     const groups = Object.keys(part.state).filter((name) => name.endsWith("_busy") && part.state[name] === true);
@@ -41,7 +41,7 @@ export function doing(part, request) {
 }
 
 /** The plain attributes of a part. */
-export function Attributes({ path, part }) {
+function Attributes({ path, part }) {
   const rows = Object.entries(part.state ?? {});
   if (rows.length === 0) return html`<p class="empty">It has no plain attributes.</p>`;
   return html`<table class="attributes" aria-label="Attributes of ${path}">

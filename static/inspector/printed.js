@@ -2,8 +2,8 @@
 
 import { signal } from "../vendor/preact.js";
 import { request } from "../server.js";
-import { alive, listeners, shownRun, state } from "../store.js";
-import { firstWhere } from "../timeline/search.js";
+import { alive, eventCount, listeners, shownRun } from "../store.js";
+import { firstWhere } from "../parts/search.js";
 
 const MAX_LINES = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
 const AT_ONCE = 20_000; // the number of events requested at once
@@ -83,7 +83,7 @@ let asking = false;
 export async function fillGaps() {
   if (asking || !alive.peek() || of !== shownRun.peek()) return;
   const [from, to] = gaps[0] ?? [];
-  const until = Math.min(to ?? 0, state.peek()?.events ?? 0);
+  const until = Math.min(to ?? 0, eventCount.peek());
   if (gaps.length === 0 || until <= from) return;
   asking = true;
   const mine = of;

@@ -4,7 +4,7 @@ import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { ChangeMenu } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
 import { wordsOf } from "../parts/words.js";
-import { runOf, systemsOf } from "./agents.js";
+import { productionKey, runOf, systemsOf } from "./agents.js";
 import { at, production } from "./explanation.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
 import { buttonTitle } from "../keys.js";
@@ -22,16 +22,18 @@ export function statusOf(reason) {
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }
 
-/** Returns the productions as [{system, name, reason}]; `reasons` are from the run's explanation, or null. */
+/** Returns the productions as [{system, name, reason}]; `reasons` are from the run's explanation. */
 export function productionsOf(parts, reasons) {
-  const key = (system, name) => `${system}\n${name}`;
-  const known = new Map((reasons ?? []).map((reason) => [key(reason.system, reason.name), reason]));
+  const gone = new Map(reasons.map((reason) => [productionKey(reason.system, reason.name), reason]));
   const found = systemsOf(parts).flatMap((system) =>
-    parts[system].productions.map((name) => ({ system, name, reason: known.get(key(system, name)) ?? null })),
+    parts[system].productions.map((name) => {
+      const key = productionKey(system, name);
+      const reason = gone.get(key) ?? null;
+      gone.delete(key);
+      return { system, name, reason };
+    }),
   );
-  const there = new Set(found.map(({ system, name }) => key(system, name)));
-  const gone = (reasons ?? []).filter((reason) => !there.has(key(reason.system, reason.name)));
-  return [...found, ...gone.map((reason) => ({ system: reason.system, name: reason.name, reason }))];
+  return [...found, ...[...gone.values()].map((reason) => ({ system: reason.system, name: reason.name, reason }))];
 }
 
 const same = (one, other) => Boolean(one && other) && one.system === other.system && one.name === other.name;

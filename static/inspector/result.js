@@ -1,16 +1,15 @@
 // The measured result of a finished run, formatted for users.
 
-import { unitOf } from "../parts/units.js";
+import { measuredText, unitOf } from "../parts/units.js";
 import { html } from "../vendor/preact.js";
 
 /** Returns the label of a number of a result, and its text with its unit. */
-export function measured(name, value) {
-  const { label: bare, unit, digits, factor } = unitOf(name);
+function measured(name, value) {
+  const { label: bare, unit } = unitOf(name);
   const label = bare.charAt(0).toUpperCase() + bare.slice(1);
   if (value === null) return [label, "none", ""];
   if (typeof value !== "number") return [label, typeof value === "object" ? JSON.stringify(value) : String(value), ""];
-  const text = Number.isInteger(value) && unit === "" ? String(value) : (value * factor).toFixed(digits);
-  return [label, text, unit];
+  return [label, measuredText(name, value), unit];
 }
 
 export function Result({ result }) {

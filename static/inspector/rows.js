@@ -11,12 +11,13 @@ const SPARE = 12; // the number of rows drawn beyond the visible ones
  * @param count The number of rows.
  * @param row Returns row n.
  * @param head The cells of the head.
+ * @param columns The widths of the columns.
  * @param aim The number of a row that stays visible until the user scrolls away from it; null for none.
  * @param chosen The number of the row selected by keyboard, or null; `onChoose` is called with a new one.
  * @param onOpen Called with the row on which Enter is pressed.
  * @param keys Other keys: actions on the chosen row, by key name.
  */
-export function Rows({ id, label, count, row, head, columns, aim = null, chosen = null, onChoose, onOpen, keys = {}, empty = null }) {
+export function Rows({ id, label, count, row, head, columns, aim = null, chosen = null, onChoose, onOpen, keys = {}, empty }) {
   const box = useRef(null);
   const set = useRef(0);
   const away = useRef(false);
@@ -79,14 +80,13 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     view.look();
   }
 
-  const from = Math.max(0, Math.floor(Math.min(view.top, count * ROW - view.height) / ROW) - SPARE);
-  const to = Math.min(count, Math.ceil((view.top + view.height) / ROW) + SPARE);
+  const [from, to] = view.range(count, ROW, SPARE);
   const drawn = [];
   for (let n = from; n < to; n += 1) drawn.push(row(n));
   return html`<div class="rows-frame">
     <div class="rows" ref=${box} tabindex="0" role="region" aria-label=${label} onScroll=${scrolled} onKeyDown=${press}>
       <table id=${id} role="grid" aria-label=${label} aria-rowcount=${count}>
-        ${columns ? html`<colgroup>${columns.map((width, n) => html`<col key=${n} style=${{ width }} />`)}</colgroup>` : null}
+        <colgroup>${columns.map((width, n) => html`<col key=${n} style=${{ width }} />`)}</colgroup>
         <thead>
           <tr>${head}</tr>
         </thead>

@@ -5,7 +5,7 @@ import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventMomentText, eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
 import { Rows } from "./rows.js";
-import { eventAt, useEventFilter } from "./event_filter.js";
+import { useEventFilter } from "./event_filter.js";
 import { askWhy } from "./explanation.js";
 import { Mixed, contactEvents } from "./contacts.js";
 import { Menu } from "../parts/menu.js";
@@ -16,10 +16,11 @@ import { furthest, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
 import { buttonTitle } from "../keys.js";
-import { events, session, shownRun, state } from "../store.js";
+import { eventCount, events, session, shownRun, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
-const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
+const USUAL = GROUPS.filter(({ first }) => first).map(({ id }) => id);
+const groups = remembered("trace groups", USUAL);
 /** The width of the column of times: enough for a day. */
 const timeWidth = () => (timeUnit(furthest.value) ? "88px" : "112px");
 const wantedWords = remembered("trace words", "");
@@ -43,23 +44,23 @@ function Groups() {
       )}
       <div class="menu-end">
         <button onClick=${() => (groups.value = all)}>All</button>
-        <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>Defaults</button>
+        <button onClick=${() => (groups.value = USUAL)}>Defaults</button>
       </div>`}
   <//>`;
 }
 
-/** Takes the run to its first stop after an event. */
-function goToEvent(number) {
+/** Takes the run to its first stop after an event, or to a contact, which has a negative number. */
+function goTo(number, [time]) {
+  if (number < 0) return seek(time / 1e6);
   const { kind, period } = session.peek();
   const tick = kind === "program" ? 1 : Math.round(period * 1e6);
-  travel((Math.ceil(eventAt(number)[0] / tick) * tick) / 1e6);
+  return travel((Math.ceil(time / tick) * tick) / 1e6);
 }
 
 function Row({ number, event, ahead, chosen, several, onChoose }) {
   const [time, source, kind] = event;
   const [what, more] = eventText(event);
-  const isTouch = number < 0;
-  const go = () => (onChoose(), isTouch ? seek(time / 1e6) : goToEvent(number));
+  const go = () => (onChoose(), goTo(number, event));
   return html`<tr
     class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
     id="event-${number}"
@@ -71,7 +72,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     ${several ? html`<td class="source">${source}</td>` : null}
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
-      ${!isTouch && (kind === "fire" || chosen)
+      ${number >= 0 && (kind === "fire" || chosen)
         ? html`<button class="bare" tabindex="-1" title=${buttonTitle({ key: "w" }, "Why? Explains this moment, and leaves the run where it is")} aria-label="Why at ${eventMomentText(time)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
@@ -93,7 +94,7 @@ export function FiringTrace() {
   const filtered = useEventFilter(test, key);
   const mixed = new Mixed(filtered.numbers, contactEvents().filter(test));
   const { first, list } = events.value;
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const time = (state.value?.time ?? 0) * 1e6 + 1;
   const present = filtered.below(now) + mixed.contacts.filter(([begins]) => begins <= time).length;
   const several = systems.length > 1;
@@ -105,7 +106,7 @@ export function FiringTrace() {
     const event = mixed.at(number);
     return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
-  const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goToEvent(mixed.numberAt(n)));
+  const open = (n) => goTo(mixed.numberAt(n), mixed.at(mixed.numberAt(n)));
   const nothing = list.length === 0 || (runStatus.value.is === "ready" && wantedWords.value === "") ? nothingYet() : "All events are filtered out.";
   return html`<section class="trace">
     <div class="tools">

@@ -9,7 +9,6 @@ import { signal } from "../vendor/preact.js";
 
 const others = signal([]);
 
-/** Lists them. */
 async function read() {
   others.value = await otherSessions(session.peek()?.id).catch(() => []); // without a list, none is offered
 }

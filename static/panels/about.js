@@ -12,18 +12,13 @@ import { session } from "../store.js";
 /** The elements allowed in a description; the server sends no others. */
 const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a", "table", "thead", "tbody", "tr", "th", "td"]);
 
-/** Runs the model from its start with these parameter values. */
-function attempt(settings) {
-  sendCommand({ type: "restart", settings, run: true });
-}
-
 /** Draws a node: a text, or an element with its children. All content is shown as text. */
 function Node({ node }) {
   if (typeof node === "string") return node;
   const { tag, children, settings, href } = node;
   if (!ELEMENTS.has(tag)) return html`<${Nodes} nodes=${children} />`;
   if (settings) {
-    return html`<${Button} class="try" disabled=${!session.value} title="Run the model from its start with these values" onClick=${() => attempt(settings)}>
+    return html`<${Button} class="try" disabled=${!session.value} title="Run the model from its start with these values" onClick=${() => sendCommand({ type: "restart", settings, run: true })}>
       <${Icon} name="run" /><code>${children}</code>
     <//>`;
   }

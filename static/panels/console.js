@@ -10,10 +10,12 @@ import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
 import { pictureName, saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
+import { useSize } from "../parts/size.js";
+import { widthOf } from "../parts/surface.js";
 import { goToTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
-import { alive, isGiven, moment, notices, session, shownRun, state } from "../store.js";
-import { firstWhere } from "../timeline/search.js";
+import { alive, eventCount, isGiven, moment, notices, session, shownRun, state } from "../store.js";
+import { firstWhere } from "../parts/search.js";
 import { inThePast } from "../timeline/seek.js";
 
 const SIDES = 40; // the room for the margins of a row and for a scroll bar [px]
@@ -96,7 +98,7 @@ function textOf({ level, file, line, text }) {
 
 /** Returns what is listed, and what is not. `memo` is `useMemo` where a component calls it. */
 function listing(memo = (make) => make()) {
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const version = printedVersion.value;
   const wanted = words.value.toLowerCase();
   const has = (text) => text.toLowerCase().includes(wanted);
@@ -122,7 +124,7 @@ function Line({ entry: [line, row] }) {
 }
 
 function Notes({ gaps, dropped, gone, all, ahead }) {
-  const now = state.value?.events ?? 0;
+  const now = eventCount.value;
   const missing = gaps.reduce((sum, [from, to]) => sum + Math.max(0, Math.min(to, now) - from), 0);
   return html`
     ${dropped > 0 ? html`<p class="note">The first ${counted(dropped, "line is", "lines are")} left out: there are too many.</p>` : null}
@@ -137,7 +139,7 @@ function save() {
 }
 
 function clearAll() {
-  clear(state.peek()?.events ?? 0, Math.max(-1, ...notices.peek().map(({ number }) => number)));
+  clear(eventCount.peek(), Math.max(-1, ...notices.peek().map(({ number }) => number)));
 }
 
 const registered = (text, work) =>
@@ -157,14 +159,10 @@ registered("Clear the console", clearAll);
 
 function Console() {
   const box = useRef(null);
+  const { width } = useSize(box);
   useLayoutEffect(() => {
-    const pen = document.createElement("canvas").getContext("2d");
-    pen.font = `12px ${getComputedStyle(box.current).getPropertyValue("--mono")}`;
-    const wide = pen.measureText("0").width;
-    const watcher = new ResizeObserver(() => (columns.value = Math.floor((box.current.clientWidth - SIDES) / wide)));
-    watcher.observe(box.current);
-    return () => watcher.disconnect();
-  }, []);
+    if (width > 0) columns.value = Math.floor((width - SIDES) / widthOf("0", { mono: true, size: 12 }));
+  }, [width]);
   const { listed, ahead, all, gaps, dropped, gone, of } = listing(useMemo);
   useEffect(() => {
     const timer = setTimeout(fillGaps, 0);

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
 import { experiments, followExperiments, isRunning, listExperiments, part, problem, showExperiment, shown, total } from "../experiments/list.js";
 import { NewExperiment } from "../experiments/new_experiment.js";
@@ -41,7 +42,7 @@ function List() {
       <span class="quiet number" role="status">${all === null ? "" : total.value > all.length ? `the newest ${all.length} of ${total.value.toLocaleString("en")}` : all.length}</span>
       <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listExperiments}><${Icon} name="restart" /></button>
     </div>
-    ${problem.value ? html`<p class="problem bad" role="alert">The experiments cannot be listed: ${problem.value}</p>` : null}
+    <${Problem} text=${problem.value && `The experiments cannot be listed: ${problem.value}`} />
     ${all === null ? html`<p class="empty" role="status">${problem.value ? "" : "Reading the experiments …"}</p>` : null}
     ${all?.length === 0 ? html`<p class="empty">No experiments yet. An experiment runs a model many times: for several participants, in all combinations of conditions. Each trial can be opened in the 3D view.</p>` : null}
     ${all?.length > 0

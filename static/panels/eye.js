@@ -7,6 +7,7 @@ import { Retina } from "../eye/retina.js";
 import { Placeholder } from "../inspector/placeholder.js";
 import { useAnswer } from "../parts/answer.js";
 import { CopyButton } from "../parts/copy.js";
+import { nameWithUnit } from "../parts/units.js";
 import { isGone, nothing } from "../run_status.js";
 import { dark } from "../theme.js";
 
@@ -54,16 +55,11 @@ function Objects({ view, pointed }) {
 
 const DIGITS = { m: 2, "°": 1 }; // decimals, by unit
 
-/** Returns the heading of a column of edges, with its unit. */
-function fieldText({ name, unit }) {
-  return unit ? `${name} [${unit}]` : name;
-}
-
 /** The descriptions of the columns of edges, as the camera documents its fields. */
 function Legend({ fields }) {
   return html`<details class="legend">
     <summary>What the columns mean</summary>
-    <dl>${fields.map((field) => html`<div key=${field.name}><dt class="mono">${fieldText(field)}</dt><dd><b>${field.title}</b>: ${field.about}</dd></div>`)}</dl>
+    <dl>${fields.map((field) => html`<div key=${field.name}><dt class="mono">${nameWithUnit(field.name, field.unit)}</dt><dd><b>${field.title}</b>: ${field.about}</dd></div>`)}</dl>
   </details>`;
 }
 
@@ -72,14 +68,13 @@ function Edges({ view }) {
   const rest = view.extents.length - MAX_ROWS;
   return html`<${Legend} fields=${view.fields} />
     <table aria-label="Edges">
-      <thead><tr>${view.fields.map((field) => html`<th class="number" key=${field.name} title="${field.title}: ${field.about}${field.unit ? ` [${field.unit}]` : ""}">${fieldText(field)}</th>`)}</tr></thead>
+      <thead><tr>${view.fields.map((field) => html`<th class="number" key=${field.name} title=${nameWithUnit(`${field.title}: ${field.about}`, field.unit)}>${nameWithUnit(field.name, field.unit)}</th>`)}</tr></thead>
       <tbody>
         ${view.extents.slice(0, MAX_ROWS).map((extent, n) => html`<tr key=${n}>${extent.map((value, at) => html`<td class="number">${text(value, at)}</td>`)}</tr>`)}
       </tbody>
     </table>
     ${rest > 0 ? html`<p class="empty">${rest} more; «Copy as JSON» has all.</p>` : null}`;
 }
-
 
 function Eye() {
   const bodies = bodiesWithEye();

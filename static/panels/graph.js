@@ -1,9 +1,9 @@
 // The graph of each agent: productions, the buffers that they read and write, the modules that they ask, and what flows at this moment.
 
 import { html, signal, useRef } from "../vendor/preact.js";
-import { agentsOf, isBelow, nameIn } from "../inspector/agents.js";
-import { at, production as explainedProduction, shownReasons } from "../inspector/explanation.js";
-import { flows, justNow, keyOf } from "../graph/flows.js";
+import { agentsOf, isBelow, nameIn, productionKey } from "../inspector/agents.js";
+import { at, explainProduction } from "../inspector/explanation.js";
+import { flows, justNow } from "../graph/flows.js";
 import { edgePath, placed } from "../graph/layout.js";
 import { pictureOfGraph } from "../graph/picture.js";
 import { openTab } from "../open_tab.js";
@@ -16,7 +16,8 @@ import { nothing } from "../run_status.js";
 import { period, running, session, state } from "../store.js";
 
 const QUESTION = { type: "explain" };
-const KINDS = { reads: "reads", writes: "writes", asks: "asks", fills: "fills" };
+/** The kinds of edges, and what their ends are. */
+const KINDS = { reads: "read", writes: "written", asks: "asked", fills: "filled" };
 const HEADS = ["Modules", "Buffers", "Productions"];
 const MARGIN = 24; // left and right of the graph [px]
 
@@ -35,7 +36,7 @@ function graphOf(agent, parts, reasons) {
   const systems = own.filter((path) => parts[path].is === "system");
   const buffers = own.filter((path) => parts[path].is === "buffer");
   const modules = own.filter((path) => ["module", "memory"].includes(parts[path].is));
-  const productions = systems.flatMap((system) => parts[system].productions.map((name) => ({ id: keyOf(system, name), system, name })));
+  const productions = systems.flatMap((system) => parts[system].productions.map((name) => ({ id: productionKey(system, name), system, name })));
   const belongs = new Set(own);
   const { fired, answered } = justNow(period.value, (source) => belongs.has(source));
   const known = flows();
@@ -62,10 +63,9 @@ function graphOf(agent, parts, reasons) {
 /** Returns what a node reads, writes, asks or fills, as text. */
 function sentence(id, edges, nameOf) {
   const list = (found) => [...new Set(found)].map(nameOf).join(", ");
-  const parts = Object.keys(KINDS).flatMap((kind) => {
+  const parts = Object.entries(KINDS).flatMap(([kind, past]) => {
     const to = list(edges.filter((edge) => edge.kind === kind && (kind === "reads" ? edge.to : edge.from) === id).map((edge) => (kind === "reads" ? edge.from : edge.to)));
     const by = list(edges.filter((edge) => edge.kind === kind && (kind === "reads" ? edge.from : edge.to) === id).map((edge) => (kind === "reads" ? edge.to : edge.from)));
-    const past = { reads: "read", writes: "written", asks: "asked", fills: "filled" }[kind];
     return [...(to ? [`${kind} ${to}`] : []), ...(by ? [`is ${past} by ${by}`] : [])];
   });
   return parts.join("; ") || "nothing flows to or from it, as far as the run has shown";
@@ -166,9 +166,8 @@ function Agent({ agent, parts, reasons, width, several }) {
 
 /** Explains a production in its own panel. */
 function explain({ system, name }) {
-  explainedProduction.value = { system, name };
   at.value = null;
-  shownReasons.value = "why";
+  explainProduction(system, name);
   openTab.value = "productions";
 }
 
@@ -195,7 +194,7 @@ function Graph() {
   const { answer } = useAnswer(QUESTION, { once: true });
   const parts = state.value?.parts ?? {};
   const agents = agentsOf(parts);
-  const reasons = new Map((answer ?? []).flatMap((one) => one.productions).map((reason) => [keyOf(reason.system, reason.name), reason]));
+  const reasons = new Map((answer ?? []).flatMap((one) => one.productions).map((reason) => [productionKey(reason.system, reason.name), reason]));
   return html`<div class="graph" ref=${box}>
     ${agents.length === 0 ? html`<p class="empty">${nothing("This model has no agent: there is nothing to draw.")}</p>` : html`<div class="graph-head">
       <${Legend} />

@@ -4,6 +4,7 @@ import { html, signal, useEffect, useState } from "../vendor/preact.js";
 import { changesOf, noChange, useChange } from "../changes/changes.js";
 import { Problem } from "../parts/problem.js";
 import { AtStart } from "../inspector/at_start.js";
+import { pathsOf } from "../inspector/agents.js";
 import { MemoryTable } from "../inspector/memory_table.js";
 import { Search } from "../inspector/retrievals.js";
 import { postures, SchemaTable } from "../inspector/schema_table.js";
@@ -83,7 +84,7 @@ function Chunks({ memory, schema }) {
 
 function Memory() {
   const parts = state.value?.parts ?? {};
-  const memories = Object.keys(parts).filter((path) => parts[path].is === "memory");
+  const memories = pathsOf(parts, "memory");
   const eyes = Object.values(parts).some((part) => part.is === "module" && "watching" in (part.state ?? {}));
   const moves = Object.values(parts).some((part) => part.is === "module" && "size_grid" in (part.state ?? {}));
   if (memories.length === 0 && !eyes) return html`<p class="empty">${nothing("This model has no declarative memory.")}</p>`;

@@ -2,7 +2,6 @@
 
 import { computed, html, useEffect } from "../vendor/preact.js";
 import { command } from "../commands.js";
-import { hasMore } from "../editor/marks.js";
 import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { toggled } from "../parts/toggled.js";
@@ -40,16 +39,12 @@ command({
   why: () => "There are no messages.",
 });
 
-function toggle(level) {
-  hidden.value = toggled(hidden.value, level);
-}
-
 function Filter() {
   const count = (level) => kept.value.filter((notice) => notice.level === level).length;
   return html`<div class="tools" role="toolbar" aria-label="Messages">
     ${Object.entries(LEVELS).map(
       ([level, text]) => html`<label key=${level}>
-        <input type="checkbox" checked=${!hidden.value.includes(level)} onChange=${() => toggle(level)} />
+        <input type="checkbox" checked=${!hidden.value.includes(level)} onChange=${() => (hidden.value = toggled(hidden.value, level))} />
         ${text} <span class="count">${count(level)}</span>
       </label>`,
     )}
@@ -64,7 +59,7 @@ function Message({ notice }) {
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
     ${action ? html` <${Button} class="link action" onClick=${() => takeAction(notice)}>${action.text}<//>` : null}
-    ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
+    <${Traceback} message=${text} detail=${detail} />
   </li>`;
 }
 

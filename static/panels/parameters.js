@@ -4,7 +4,7 @@ import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
 import { commandsOf } from "../commands.js";
-import { isMac, keyText, noteKey } from "../keys.js";
+import { hasMod, keyText, noteKey } from "../keys.js";
 import { openTab } from "../open_tab.js";
 import { match } from "../palette/fuzzy.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
@@ -81,17 +81,21 @@ function forgotten() {
   return [...names].filter((name) => !present.value.get(name)?.known);
 }
 
-function problems() {
-  return known().some((parameter) => parameter.name in drafts.value && read(parameter, drafts.value[parameter.name]).problem);
+/** Returns what was entered for a parameter, {value} or {problem}; null for nothing. */
+function entered(parameter) {
+  const text = drafts.value[parameter.name];
+  return text === undefined ? null : read(parameter, text);
 }
 
-function waiting() {
-  return known().filter((parameter) => {
-    if (!(parameter.name in drafts.value)) return false;
-    const { value, problem } = read(parameter, drafts.value[parameter.name]);
-    return !problem && value !== inForce(parameter);
-  });
+const hasProblem = () => known().some((parameter) => entered(parameter)?.problem);
+
+/** Whether a valid value was entered that is not in effect yet. */
+function waits(parameter) {
+  const draft = entered(parameter);
+  return draft !== null && !draft.problem && draft.value !== inForce(parameter);
 }
+
+const waiting = () => known().filter(waits);
 
 /** Stores an entered value; that of a live parameter takes effect at once, unless the run is over. */
 async function write(parameter, text, whole) {
@@ -120,11 +124,12 @@ function drop(name) {
 /** Starts a new run with the values of the form; it goes on at once if the button that sends the form has the value "run". */
 function restart(event) {
   event.preventDefault();
-  if (problems()) return;
+  if (hasProblem()) return;
   const settings = {};
   for (const parameter of known()) {
     const { name } = parameter;
-    const value = name in drafts.value ? read(parameter, drafts.value[name]).value : inForce(parameter);
+    const draft = entered(parameter);
+    const value = draft ? draft.value : inForce(parameter);
     if (present.value.get(name)?.known && value !== present.value.get(name).default) settings[name] = value;
   }
   const wanted = seed.value.trim();
@@ -133,7 +138,7 @@ function restart(event) {
 
 /** Presses «Run with these» for Mod+Enter. */
 function press(event) {
-  if (event.key !== "Enter" || !(isMac ? event.metaKey : event.ctrlKey)) return;
+  if (event.key !== "Enter" || !hasMod(event)) return;
   event.preventDefault();
   event.currentTarget.querySelector("[value=run]").click();
 }
@@ -171,10 +176,9 @@ function Slider({ parameter, text }) {
 function Field({ parameter }) {
   const { name, unit, help } = parameter;
   const id = `parameter-${name}`;
-  const draft = drafts.value[name];
-  const text = draft ?? written(inForce(parameter));
-  const problem = draft === undefined ? null : read(parameter, draft).problem;
-  const changed = draft !== undefined && !problem && read(parameter, draft).value !== inForce(parameter);
+  const text = drafts.value[name] ?? written(inForce(parameter));
+  const problem = entered(parameter)?.problem;
+  const changed = waits(parameter);
   return html`<div class="parameter ${changed ? "waits" : ""}">
     <label for=${id}>${name}</label>
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} /><${Slider} parameter=${parameter} text=${text} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
@@ -208,7 +212,7 @@ function Parameters() {
   const former = forgotten();
   const stale = isStale();
   const problem = seed.value.trim() === "" ? null : seedProblem(seed.value);
-  const refused = shown.gone || problems() || Boolean(problem) || (shown.loading && state.value === null);
+  const refused = shown.gone || hasProblem() || Boolean(problem) || (shown.loading && state.value === null);
   return html`<form class="parameters" onSubmit=${restart} onKeyDownCapture=${press}>
     ${shown.gone ? html`<p class="note">${GONE}</p>` : null}
     ${stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}

@@ -4,6 +4,7 @@ import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { wordsOf } from "../parts/words.js";
 import { SelectedRuns } from "../runs/selected_runs.js";
 import { goToTab } from "../open_tab.js";
@@ -72,7 +73,7 @@ function Runs() {
       <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listRuns}><${Icon} name="restart" /></button>
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The recordings cannot be listed: ${problem.value} <button onClick=${listRuns}>Try again</button></p>` : null}
-    ${warning.value ? html`<p class="problem bad" role="alert">${warning.value}</p>` : null}
+    <${Problem} text=${warning.value} />
     ${body(all, ordered, search)}
     ${idle > 0 ? html`<p class="left-out">${counted(idle, "recording")} without a step ${idle === 1 ? "is" : "are"} not listed <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
     <${SelectedRuns} list=${picked} />

@@ -80,7 +80,7 @@ function canMove() {
 /** Asks which change is to be made, and for the rest. */
 async function moveOrPush() {
   const list = changesOf("object");
-  const actions = [{ text: "Cancel", value: null }, ...list.map((one) => ({ text: `${one.title} …`, value: one }))];
+  const actions = list.map((one) => ({ text: `${one.title} …`, value: one }));
   const body = html`<dl class="change-help">${list.map((one) => html`<dt>${one.title}</dt><dd>${one.help}</dd>`)}</dl><p class="quiet">The overlay «handles to move things» moves them with the mouse.</p>`;
   const chosen = await dialog({ title: "Change by hand", body, actions });
   if (chosen) askAndMake(chosen);
@@ -168,9 +168,10 @@ export function Scene() {
   const pictured = useSignal({ of: "", drawn: null });
   useEffect(() => {
     const hear = ({ source, data }) => {
-      if (source === frame.current.contentWindow && typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
-      if (source === frame.current.contentWindow && Array.isArray(data?.camera)) keepCamera(data.camera);
-      if (source === frame.current.contentWindow && data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
+      if (source !== frame.current.contentWindow) return;
+      if (typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
+      if (Array.isArray(data?.camera)) keepCamera(data.camera);
+      if (data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
     };
     addEventListener("message", hear);
     return () => removeEventListener("message", hear);

@@ -57,14 +57,14 @@ export function rangeOf({ takes, above, least, below, most }) {
 /** Parses the text of a field: {value}, or {problem} with a description of valid values. */
 export function read(parameter, text) {
   const { takes, optional } = parameter;
-  if (takes === "switch") return { value: text === true || text === "true" };
+  if (takes === "switch") return { value: text === "true" };
   if (text === "" && optional) return { value: null };
   if (takes === "choice") return { value: parameter.choices.find((choice) => String(choice) === text) };
   if (takes !== "number" && takes !== "whole number") return { value: text };
   const value = Number(text);
   if (isTooLarge(text)) return { problem: TOO_LARGE };
-  const hint = String(text).includes(",") ? "; the decimal point is '.', and nothing separates thousands" : "";
-  if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `must be a ${takes}${hint}` };
+  const hint = text.includes(",") ? "; the decimal point is '.', and nothing separates thousands" : "";
+  if (text.trim() === "" || !Number.isFinite(value)) return { problem: `must be a ${takes}${hint}` };
   if (takes === "whole number" && !Number.isInteger(value)) return { problem: "must be a whole number" };
   const { above, least, below, most } = parameter;
   const held = (above === null || value > above) && (least === null || value >= least) && (below === null || value < below) && (most === null || value <= most);

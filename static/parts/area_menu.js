@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { run } from "../commands.js";
 import { buttonTitle, keyText } from "../keys.js";
 import { AREAS, layoutCommands, maximised, swap } from "../layout.js";
-import { alone } from "../windows.js";
+import { alone } from "../address.js";
 import { Icon } from "./icon.js";
 import { Menu } from "./menu.js";
 

@@ -16,7 +16,6 @@ export function valueText(value) {
 
 /** Returns a chunk in one line: positional slots first, then named ones. */
 export function chunkText(chunk) {
-  if (!chunk) return "";
   return slotsOf(chunk)
     .map(([slot, text]) => (slot ? `${slot}:${text}` : text))
     .join(" ");

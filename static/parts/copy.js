@@ -1,6 +1,6 @@
 // A button that copies text to the clipboard, and confirms it on itself.
 
-import { html, useEffect, useState } from "../vendor/preact.js";
+import { computed, html, signal, useMemo } from "../vendor/preact.js";
 import { notify } from "../store.js";
 import { Button } from "./button.js";
 import { dialog } from "./dialog.js";
@@ -31,22 +31,21 @@ function offer(text) {
   dialog({ title: "Copy the text", body });
 }
 
+/** Returns {isShown, confirm}: a signal that is true for a while after each `confirm`. */
+export function confirmation() {
+  const count = signal(0); // how many are shown
+  function confirm() {
+    count.value += 1;
+    setTimeout(() => (count.value -= 1), SHOWN);
+  }
+  return { isShown: computed(() => count.value > 0), confirm };
+}
+
 /** @param text The button's text. @param copied Returns the text to copy, or a promise of it. @param title The tooltip. */
 export function CopyButton({ text, copied, disabled = false, title = undefined }) {
-  const [count, setCount] = useState(0);
-  const [done, setDone] = useState(false);
-  useEffect(() => {
-    if (count === 0) return undefined;
-    setDone(true);
-    const timer = setTimeout(() => setDone(false), SHOWN);
-    return () => clearTimeout(timer);
-  }, [count]);
-
-  async function copy() {
-    if (await copyText(copied())) setCount((before) => before + 1);
-    else setDone(false);
-  }
-
+  const { isShown, confirm } = useMemo(confirmation, []);
+  const copy = async () => (await copyText(copied())) && confirm();
+  const done = isShown.value;
   // As wide as the longer text, so that nothing moves.
   return html`<${Button} class="copy ${done ? "done" : ""}" disabled=${disabled} title=${title} onClick=${copy}>
     <${Icon} name=${done ? "check" : "copy"} /><span>${text}</span><span class="said" role="status">${done ? "Copied" : ""}</span>

@@ -1,7 +1,7 @@
 // Curves as CSV.
 
 import { valueAt } from "./curve.js";
-import { exactTime } from "./units.js";
+import { exactTime, nameWithUnit } from "./units.js";
 
 const DIGITS = 12; // the significant digits of a value; further ones are the rounding of a computation
 
@@ -18,7 +18,7 @@ export function csvText(all, until = 0) {
   const moments = new Set(curves.flatMap((curve) => curve.times.map(exactTime)));
   for (const curve of curves.filter(goesOn)) moments.add(exactTime(curve.until));
   const times = [...moments].sort((one, other) => one - other);
-  const heads = ["time [s]", ...curves.map(({ name, unit }) => (unit ? `${name} [${unit}]` : name))];
+  const heads = ["time [s]", ...curves.map(({ name, unit }) => nameWithUnit(name, unit))];
   const columns = curves.map((curve) => {
     const own = new Set(curve.times.map(exactTime));
     const valueText = (value) => (value === null ? "" : Number(value.toPrecision(DIGITS)));

@@ -1,6 +1,7 @@
 // Draws curves over time in a box: a scale at the left, lines at round values, each curve in its own colour.
 
-import { digitsOf, numberText, roundRange, stepFor, ticks, timeStep } from "./ticks.js";
+import { digitsOf, roundRange, scaleText, stepFor, ticks, timeStep } from "./ticks.js";
+import { firstFrom } from "./search.js";
 import { cut, widthOf } from "./surface.js";
 import { timeText } from "./units.js";
 
@@ -18,17 +19,6 @@ const EDGE = 6; // the distance of the first and last text from the ends of an a
 /** Returns the name of the colour of the nth curve. */
 export function seriesColour(n) {
   return `series-${(n % COLOUR_COUNT) + 1}`;
-}
-
-/** Returns the index of the first of ascending times that is not before a given time; those before the index `from` are not looked at. */
-export function firstFrom(times, time, from = 0) {
-  let [low, high] = [from, times.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] < time) low = middle + 1;
-    else high = middle;
-  }
-  return low;
 }
 
 /**
@@ -206,26 +196,25 @@ function* alone(points) {
  *
  * @param surface The surface to draw on.
  * @param box {x, y, width, height} of the curves; the scale is left of it.
- * @param series [{name, unit, values, times?, colour?, dash?, shape?, slope?, until?}]: of the shape "points", each value is that of a
+ * @param series [{name, unit, times, values, colour?, dash?, shape?, slope?, until?}]: of the shape "points", each value is that of a
  *   moment; of "steps", it holds until the next one; of any other, a line joins them. With `slope`, the last value goes on until `until`,
  *   and changes by it in a second.
- * @param times The times of the series without their own [s].
  * @param span {from, to}: the times from the left to the right edge [s].
  * @param range [least, most]: the values from the lower to the upper edge.
  * @param until The end of curves that go on, and have no `until` of their own [s].
  */
-export function drawCurves(surface, box, { series, times, span, range, until }) {
+export function drawCurves(surface, box, { series, span, range, until }) {
   const [least, most] = range;
   const yOf = (value) => box.y + box.height - ((value - least) / (most - least)) * box.height;
   for (const value of scaleOf(least, most, Math.max(1, Math.floor(box.height / 11)))) {
     const y = Math.round(yOf(value)) + 0.5;
     surface.line([box.x, y, box.x + box.width, y], "line");
-    if (y > box.y + 4) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
+    if (y > box.y + 4) surface.text(scaleText(value), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
   }
   surface.within(box.x, box.y - EDGES, box.width, box.height + 2 * EDGES, () => {
     const drawn = { lines: [], strokes: [] };
     series.forEach(({ colour, dash, ...curve }, n) => {
-      const [of, name] = [{ times, until, ...curve }, colour ?? seriesColour(n)];
+      const [of, name] = [{ until, ...curve }, colour ?? seriesColour(n)];
       const [kind, places] = of.shape === "points" ? ["strokes", strokesOf(of, span, box, yOf)] : ["lines", pointsOf(of, span, box, yOf)];
       const below = drawn[kind].filter((others) => hides(places, others)).length;
       drawn[kind].push(places);

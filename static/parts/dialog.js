@@ -2,30 +2,33 @@
 
 import { Button } from "./button.js";
 import { Problem } from "./problem.js";
+import { notify } from "../store.js";
 import { html, signal, useEffect, useId, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 
 /** The open dialogs; the last one is on top. */
 const open = signal([]);
 let opened = 0;
 
-/** Shows a dialog, on top of those that are open: `title`, `body` (made by `html`) and `actions` [{text, kind, value, busy?}]. Returns the value of the chosen action;
- * null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
- * with choices [{value, text}], {text, choice}. With `check` it stays open until that function has checked the result of an action and
- * returned true; the function shows itself what is wrong, and meanwhile the action's button has the text `busy`. */
-export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined, check = undefined }) {
+/** Shows a dialog, on top of those that are open: `title`, `body` (made by `html`) and `actions` besides Cancel, [{text, kind?, value?, busy?}];
+ * without any, it has the button Close. Returns the value of the chosen action, which is true by default; null if it is closed. With `ask`
+ * {label, value, problem?, choices?} it has a text field, and the entered text is returned; with choices [{value, text}], {text, choice}. With
+ * `check` it stays open until that function has checked the result of an action and returned true; the function shows itself what is wrong, and
+ * meanwhile the action's button has the text `busy`. An Error that it throws is shown by `onError`; among the messages, if the user has closed
+ * the dialog. */
+export function dialog({ title, body = null, actions = [], ask, check, onError }) {
   opened += 1;
-  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions, ask, check, resolve }]));
+  const all = [{ text: actions.length > 0 ? "Cancel" : "Close", value: null }, ...actions.map((one) => ({ value: true, ...one }))];
+  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions: all, ask, check, onError, resolve }]));
 }
 
 /** Asks for confirmation; returns whether the user agrees. */
 export function confirmed(title, text, action) {
-  const actions = [{ text: "Cancel", value: false }, { text: action, value: true, kind: "danger" }];
-  return dialog({ title, body: html`<p>${text}</p>`, actions }).then(Boolean);
+  return dialog({ title, body: html`<p>${text}</p>`, actions: [{ text: action, kind: "danger" }] }).then(Boolean);
 }
 
 /** Asks for a text; returns it, or null. `more` may have `problem`, why the text is not valid, and `choices`; see `dialog`. */
 export function asked(title, label, value, action, more = {}) {
-  return dialog({ title, ask: { label, value, ...more }, actions: [{ text: "Cancel", value: null }, { text: action, value: true, kind: "primary" }] });
+  return dialog({ title, ask: { label, value, ...more }, actions: [{ text: action, kind: "primary" }] });
 }
 
 /** Shows a `dialog` element above everything else, with the focus on its field that has `data-first`, if there is one. The browser's own
@@ -68,12 +71,22 @@ function Dialog({ shown }) {
     const result = shown.ask && value ? written() : value;
     if (value && shown.check) {
       checking.value = true;
-      const fine = await shown.check(result);
+      const fine = await checked(result);
       checking.value = false;
       if (!fine || !isOpen()) return;
     }
     open.value = open.peek().filter((other) => other !== shown);
     shown.resolve(result);
+  }
+
+  async function checked(result) {
+    try {
+      return await shown.check(result);
+    } catch (error) {
+      if (isOpen()) await shown.onError(error);
+      else notify(`${shown.title}: ${error.message}`);
+      return false;
+    }
   }
 
   function written() {
@@ -102,7 +115,7 @@ function Dialog({ shown }) {
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
     )}
     <footer role="none">
-      ${shown.actions.map(({ text, value, kind, busy = "checking …" }) => html`<${Button} class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}<//>`)}
+      ${shown.actions.map(({ text, value, kind = "", busy = "checking …" }) => html`<${Button} class=${kind} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}<//>`)}
     </footer>
   </dialog>`;
 }

@@ -34,9 +34,7 @@ export function Lines({ label, count, line, of }) {
     view.look();
   }, [count, of]);
 
-  const top = Math.max(0, Math.min(view.top, count * LINE - view.height));
-  const from = Math.max(0, Math.floor(top / LINE) - SPARE);
-  const to = Math.min(count, Math.ceil((top + view.height) / LINE) + SPARE);
+  const [from, to] = view.range(count, LINE, SPARE);
   const drawn = [];
   for (let n = from; n < to; n += 1) drawn.push(line(n));
   return html`<div class="lines" ref=${box} tabindex="0" role="region" aria-label=${label} onScroll=${scrolled}>

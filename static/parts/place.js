@@ -3,6 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { open } from "../editor/documents.js";
+import { hasMore } from "../editor/marks.js";
 import { isAvailable } from "../needs.js";
 import { openTab } from "../open_tab.js";
 
@@ -29,10 +30,11 @@ export function Place({ file, line }) {
   return html`<button class="place link" title="Open in the editor" onClick=${() => openAt(path, line)}>${text}</button>`;
 }
 
-/** A traceback as text, with links to the lines of the folder's files. */
-export function Traceback({ text }) {
-  return html`<pre>
-${text
+/** The traceback of a problem, if it has more than the message, with links to the lines of the folder's files. */
+export function Traceback({ message, detail }) {
+  if (!hasMore({ message, detail })) return null;
+  return html`<details><summary>Traceback</summary><pre>
+${detail
       .trimEnd()
       .split("\n")
       .map((line) => {
@@ -42,5 +44,5 @@ ${text
         const [, before, , between, number, after] = found;
         return html`${before}<button class="place link" onClick=${() => openAt(path, Number(number))}>${path}</button>${between}${number}${after}${"\n"}`;
       })}</pre
-  >`;
+  ></details>`;
 }

@@ -25,11 +25,11 @@ export function widthOf(text, style = {}) {
 }
 
 /** Returns the lines of a text that is broken between words, none of which is wider than a width, unless a word is. */
-export function wrapped(text, most, style) {
+export function wrapped(text, most) {
   const lines = [];
   for (const word of text.split(" ")) {
     const longer = `${lines.at(-1)} ${word}`;
-    if (lines.length > 0 && widthOf(longer, style) <= most) lines[lines.length - 1] = longer;
+    if (lines.length > 0 && widthOf(longer) <= most) lines[lines.length - 1] = longer;
     else lines.push(word);
   }
   return lines;
@@ -39,13 +39,7 @@ export function wrapped(text, most, style) {
 export function cut(text, most, style = {}) {
   const line = text.length > 400 ? text.slice(0, 400) : text;
   if (widthOf(line, style) <= most) return line;
-  let [fits, over] = [0, line.length];
-  while (over - fits > 1) {
-    const middle = (fits + over) >> 1;
-    if (widthOf(`${line.slice(0, middle)}…`, style) <= most) fits = middle;
-    else over = middle;
-  }
-  return fits > 0 ? `${line.slice(0, fits)}…` : "";
+  return longestFit(line.length, (kept) => `${line.slice(0, kept)}…`, most, style);
 }
 
 /** Returns a name that fits into a width [px]; a longer one has an ellipsis in its middle: names differ at their beginnings and ends. */
@@ -53,13 +47,28 @@ export function cutMiddle(name, most, style = {}) {
   if (widthOf(name, style) <= most) return name;
   const letters = Array.from(name);
   const shortened = (kept) => `${letters.slice(0, Math.ceil(kept / 2)).join("")}…${letters.slice(letters.length - Math.floor(kept / 2)).join("")}`;
-  let [fits, over] = [0, letters.length];
+  return longestFit(letters.length, shortened, most, style);
+}
+
+/** Returns the longest shortened text that fits: `shortened` makes one of a number of letters, less than `count`; "" if none fits. */
+function longestFit(count, shortened, most, style) {
+  let [fits, over] = [0, count];
   while (over - fits > 1) {
     const kept = (fits + over) >> 1;
     if (widthOf(shortened(kept), style) <= most) fits = kept;
     else over = kept;
   }
   return fits > 0 ? shortened(fits) : "";
+}
+
+/** Calls `go` with each point of [x, y, x, y, …] and whether a line begins there; NaN breaks it. */
+function along(points, go) {
+  let begins = true;
+  for (let n = 0; n < points.length; n += 2) {
+    const isBreak = Number.isNaN(points[n + 1]);
+    if (!isBreak) go(points[n], points[n + 1], begins);
+    begins = isBreak;
+  }
 }
 
 /** Draws on a canvas. Colours are names of style.css. */
@@ -102,15 +111,7 @@ export class CanvasSurface {
     context.lineJoin = "round";
     context.setLineDash(dash);
     context.beginPath();
-    let broken = true;
-    for (let n = 0; n < points.length; n += 2) {
-      if (Number.isNaN(points[n + 1])) broken = true;
-      else {
-        if (broken) context.moveTo(points[n], points[n + 1]);
-        else context.lineTo(points[n], points[n + 1]);
-        broken = false;
-      }
-    }
+    along(points, (x, y, begins) => (begins ? context.moveTo(x, y) : context.lineTo(x, y)));
     context.stroke();
     context.globalAlpha = 1;
   }
@@ -157,8 +158,7 @@ export class CanvasSurface {
 /** Creates a self-contained SVG. Colours are names of style.css. */
 export class SvgSurface {
   constructor(width, height) {
-    this.size = [width, height];
-    this.root = node("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
+    this.root = node("svg", { width, height, viewBox: `0 0 ${width} ${height}` });
     this.into = this.root;
     this.clips = 0;
   }
@@ -169,14 +169,7 @@ export class SvgSurface {
 
   line(points, name, { width = 1, dash = [], alpha = 1 } = {}) {
     let path = "";
-    let broken = true;
-    for (let n = 0; n < points.length; n += 2) {
-      if (Number.isNaN(points[n + 1])) broken = true;
-      else {
-        path += `${broken ? "M" : "L"}${short(points[n])} ${short(points[n + 1])}`;
-        broken = false;
-      }
-    }
+    along(points, (x, y, begins) => (path += `${begins ? "M" : "L"}${short(x)} ${short(y)}`));
     const dashes = { ...(dash.length ? { "stroke-dasharray": dash.join(" ") } : {}), ...(alpha < 1 ? { "stroke-opacity": alpha } : {}) };
     this.into.append(node("path", { d: path, fill: "none", stroke: colour(name), "stroke-width": width, "stroke-linejoin": "round", ...dashes }));
   }
@@ -219,7 +212,7 @@ const short = (number) => String(Math.round(number * 100) / 100);
 
 function node(name, attributes) {
   const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) if (key !== "xmlns") made.setAttribute(key, value);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
   return made;
 }
 

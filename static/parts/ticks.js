@@ -50,3 +50,6 @@ export function numberText(value) {
   const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 1 ? 2 : 3;
   return value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1");
 }
+
+/** Returns the same without zeros at its end, as scales show it. */
+export const scaleText = (value) => numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");

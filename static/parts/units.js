@@ -20,6 +20,18 @@ export function unitOf(name) {
   return { label: name.slice(0, name.length - ending.length).replaceAll("_", " "), unit, digits, factor };
 }
 
+/** Returns a measured number in its unit, with the decimals of that. */
+export function measuredText(name, value) {
+  const { unit, digits, factor } = unitOf(name);
+  return Number.isInteger(value) && unit === "" ? String(value) : (value * factor).toFixed(digits);
+}
+
+/** Returns a name with its unit, if it has one, as headings have it: `speed [m/s]`. */
+export const nameWithUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
+
+/** Returns a value with its unit, if it has one: `1.2 m`, `5°`. */
+export const valueWithUnit = (value, unit) => `${value}${unit && unit !== "°" ? " " : ""}${unit ?? ""}`;
+
 const HOUR = 3600; // [s]
 
 /** Returns a time [s] as people read it: seconds with their unit; from an hour on, hours, minutes and seconds: `1:15:12.30`. Files have

@@ -2,7 +2,8 @@
 
 import { useLayoutEffect, useState } from "../vendor/preact.js";
 
-/** Returns the visible part of a box [px], {top, height}, and `look`, which reads it again and is to be called when the box is scrolled.
+/** Returns the visible part of a box [px], {top, height}; `look`, which reads it again and is to be called when the box is scrolled; and `range`,
+ * which returns the numbers [from, beyond] of the visible ones of `count` rows of a height [px], and of `spare` more at each end.
  *
  * @param box A ref to the box.
  * @param resized Called when its size has changed, before its visible part is read; only what the first one refers to counts. */
@@ -23,5 +24,9 @@ export function useVisible(box, resized = () => {}) {
     look();
     return () => watcher.disconnect();
   }, []);
-  return { ...view, look };
+  function range(count, row, spare) {
+    const top = Math.max(0, Math.min(view.top, count * row - view.height));
+    return [Math.max(0, Math.floor(top / row) - spare), Math.min(count, Math.ceil((top + view.height) / row) + spare)];
+  }
+  return { ...view, look, range };
 }

@@ -10,7 +10,7 @@ import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, or
 
 const ROW = 44; // [px]; panels/runs.css has the same
 const MAX_DIGITS = 19; // of a seed: aligned to the right, texts of numbers are in the order of the numbers
-const AROUND = 6; // the number of rows drawn beyond the visible ones
+const AROUND = 12; // the number of rows drawn beyond the visible ones
 
 /** The sort keys: their column headings, and the values to compare. */
 const KEYS = {
@@ -127,8 +127,7 @@ export function Table({ list, open }) {
     return () => clearInterval(clock);
   }, []);
 
-  const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.top / ROW) - AROUND));
-  const beyond = Math.min(list.length, first + Math.ceil(seen.height / ROW) + 2 * AROUND);
+  const [first, beyond] = seen.range(list.length, ROW, AROUND);
   const kept = list.findIndex((run) => run.id === focused.value);
   if (kept >= 0) spot.current = kept;
   // The rows before and after it are drawn too, for the keys that lead to them; when it is deleted, one of them gets the focus.

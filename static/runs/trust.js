@@ -31,6 +31,5 @@ function agreed(id, doing, { file, source, helpers }, noun) {
     <p>This installation did not make the ${noun} <span class="mono">${id}</span>, or it was changed since. ${doing} runs the code that it holds, with your rights and on your files. Go on only if you know where it comes from.</p>
     ${texts.map(([name, text], n) => html`<details key=${name} open=${n === 0}><summary class="mono">${name}</summary><pre tabindex="0" aria-label=${`Code of ${name}`}>${text}</pre></details>`)}
   </div>`;
-  const actions = [{ text: "Cancel", value: false }, { text: "Run its code", value: true, kind: "danger" }];
-  return dialog({ title: noun === "recording" ? "A recording from elsewhere" : "An experiment from elsewhere", body, actions });
+  return dialog({ title: noun === "recording" ? "A recording from elsewhere" : "An experiment from elsewhere", body, actions: [{ text: "Run its code", kind: "danger" }] });
 }

@@ -1,7 +1,7 @@
 // Recordings as text: date, parameters, results.
 
 import { valueText } from "../parts/chunk.js";
-import { timeText, unitOf } from "../parts/units.js";
+import { measuredText, timeText, unitOf, valueWithUnit } from "../parts/units.js";
 import { isOrphan } from "./list.js";
 
 const ENDED = {
@@ -151,12 +151,7 @@ export function firstMeasure({ result }) {
 export function resultText(run) {
   const [name, value] = firstMeasure(run) ?? [];
   if (name === undefined) return "";
-  const { unit, digits, factor } = unitOf(name);
-  return withUnit(Number.isInteger(value) && unit === "" ? value : (value * factor).toFixed(digits), unit);
-}
-
-function withUnit(text, unit) {
-  return `${text}${unit && unit !== "°" ? " " : ""}${unit}`;
+  return valueWithUnit(measuredText(name, value), unitOf(name).unit);
 }
 
 /** Returns how a run ended, as text. */
@@ -176,7 +171,7 @@ export function labelOf(name) {
 export function measureText(name, value) {
   if (typeof value !== "number") return value === null || value === undefined ? "–" : valueText(value);
   const { unit, factor } = unitOf(name);
-  return withUnit(valueText(value * factor), unit);
+  return valueWithUnit(valueText(value * factor), unit);
 }
 
 /** Returns all text that a search includes. */

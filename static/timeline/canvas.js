@@ -37,7 +37,7 @@ export function drawing(whole = false) {
     period: session.peek()?.period || 0,
     now: whole ? null : labelOfNow(),
     fetching: fetching.peek(),
-    begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
+    begin: events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
     known: events.peek().elsewhere ? Math.max(lanes.now / 1e6, present.peek()) : Infinity,
   };
 }

@@ -5,9 +5,10 @@
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
 import { isLeft, request } from "../server.js";
-import { alive, hurried, notify, period, running, session, state, history } from "../store.js";
-import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
-import { exactTime } from "../parts/units.js";
+import { alive, eventCount, history, hurried, notify, period, running, session } from "../store.js";
+import { leastAndMost, rangeOf, replace } from "../parts/curve.js";
+import { firstFrom } from "../parts/search.js";
+import { exactTime, nameWithUnit } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
 import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
@@ -127,14 +128,13 @@ export function plotAll(names, on) {
   keep(on ? [...others, ...names] : others);
 }
 
-/** Plots the usual curves. */
 export function plotUsual() {
   keep(null);
 }
 
 /** The heading of a plot, with its unit if it has one. */
 export function headingOf({ title, unit }) {
-  return unit ? `${title} [${unit}]` : title;
+  return nameWithUnit(title, unit);
 }
 
 const plotsOfBodies = computed(() => {
@@ -360,7 +360,7 @@ async function askOnce() {
   if (key !== list.join("\n")) begin(list);
   const mine = key;
   const now = furthest.peek();
-  const count = state.peek()?.events ?? 0;
+  const count = eventCount.peek();
   // Events may have been added at the newest moment itself, and curves that the page does not know.
   const stretch = (list.length > 0 ? next(list) : null) ?? (isNew || (events && counted !== count) ? { from: now, to: now, most: AT_ONCE, whole: false } : null);
   if (!stretch) return false;
@@ -390,8 +390,6 @@ document.addEventListener("visibilitychange", () => alive.peek() && ask());
 effect(() => {
   if (session.value && colours.value.size > (keptColours.value?.length ?? 0)) keepColours([...colours.value]);
 });
-
-const eventCount = computed(() => state.value?.events);
 
 effect(() => {
   for (const one of [furthest, running, chosen, session, history, span, offered, eventCount]) one.value;

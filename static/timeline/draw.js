@@ -3,10 +3,10 @@
 import { drawCurves, drawTimes, valueAt } from "../parts/curve.js";
 import { cut, cutMiddle, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
-import { session } from "../store.js";
+import { bodies } from "../store.js";
 import { chunkCurve, colourOf, headingOf, titleOf } from "./curves.js";
 import { bandText } from "./lanes.js";
-import { firstWhere, nextWhere } from "./search.js";
+import { firstWhere, nextWhere } from "../parts/search.js";
 import { AXIS, column, MARGIN, NAME, PLOT } from "./rows.js";
 import { span } from "./view.js";
 
@@ -61,7 +61,6 @@ function wholeSpan(scene) {
   return { from: timeOf(scene.column, scene), to: scene.span.to };
 }
 
-/** Draws the timeline. */
 export function drawTimeline(surface, scene) {
   const { width, height, column, span, layout, scroll } = scene;
   surface.within(0, AXIS, width, height - AXIS, () => {
@@ -244,8 +243,8 @@ function labelsOf(plot, room) {
 function shortName(name, { title, group, series }) {
   const of = chunkCurve(name);
   if (of) return title !== titleOf(group) ? of.part : `${of.memory}: ${of.chunk}${of.kind === "activation" ? "" : ` ${of.part}`}`;
-  const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
-  const body = bodies.length === 1 && /^[_ .]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
+  const [only = "", ...others] = Object.keys(bodies.peek());
+  const body = others.length === 0 && /^[_ .]/.test(name.slice(only.length)) && name.startsWith(only) ? only : "";
   const rest = name.slice(body ? body.length + 1 : 0);
   const last = ` ${title}`;
   const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest.endsWith(last) ? rest.slice(0, -last.length) : rest.replace(`.${title}`, "");

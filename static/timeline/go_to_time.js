@@ -35,8 +35,7 @@ async function ask() {
     problem.value = wrong();
     return problem.value === null;
   };
-  const actions = [{ text: "Cancel", value: null }, { text: "Go there", value: true, kind: "primary" }];
-  if (await dialog({ title: "Go to a time", body: html`<${Body} />`, actions, check })) seek(timeOfText(text.value));
+  if (await dialog({ title: "Go to a time", body: html`<${Body} />`, actions: [{ text: "Go there", kind: "primary" }], check })) seek(timeOfText(text.value));
 }
 
 /** The command that opens it. */

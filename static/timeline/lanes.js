@@ -4,7 +4,7 @@ import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
 import { seriesColour } from "../parts/curve.js";
 import { ReplacedValues } from "./commands.js";
-import { firstWhere } from "./search.js";
+import { firstWhere } from "../parts/search.js";
 import { TAKERS } from "./lane_builders.js";
 
 /**
@@ -96,7 +96,6 @@ export class Lanes {
     this.clear();
   }
 
-  /** Removes everything. */
   clear() {
     this.lanes = new Map();
     this.tones = new Map(); // the names of colours by name

@@ -2,16 +2,16 @@
 
 import { html, signal } from "../vendor/preact.js";
 import { csvText } from "../parts/csv.js";
-import { drawCurves, drawLegend, drawTimes } from "../parts/curve.js";
 import { dialog } from "../parts/dialog.js";
 import { pictureName, runName, saveFile, savePicture } from "../parts/picture.js";
+import { pictureOfPlot } from "../parts/plot.js";
 import { session } from "../store.js";
 import { headingOf, plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
 import { drawing } from "./canvas.js";
 import { furthest } from "./seek.js";
 
-const [WIDE, HIGH, LEFT, RIGHT] = [900, 260, 46, 32]; // of a plot [px]
+const [WIDE, HIGH] = [900, 240]; // of a plot [px]
 const which = signal("");
 
 function ofTimeline() {
@@ -21,13 +21,7 @@ function ofTimeline() {
 
 function ofPlot(plot) {
   const { span, end } = drawing();
-  const box = { x: LEFT, y: 22, width: WIDE - LEFT - RIGHT, height: HIGH - 42 };
-  const draw = (surface) => {
-    drawLegend(surface, LEFT, 8, WIDE - LEFT, plot.series);
-    drawTimes(surface, box, span, { y: box.y + box.height, room: { from: 0, to: WIDE }, longest: end });
-    drawCurves(surface, box, { ...plot, span, until: end });
-  };
-  return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runName(session.peek())}`, draw };
+  return { ...pictureOfPlot({ ...plot, span, until: end }, WIDE, HIGH), title: `${headingOf(plot)}: ${runName(session.peek())}` };
 }
 
 /** Asks what to save, and saves it. */
@@ -41,9 +35,9 @@ export async function savePictures() {
       ${offered.map((plot, n) => html`<option key=${n} value=${n}>the plot of ${headingOf(plot)}</option>`)}
     </select>
   </label>`;
-  const kinds = [{ text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }];
-  if (offered.length > 0) kinds.unshift({ text: "CSV", value: "csv" });
-  const kind = await dialog({ title: "Save a picture or its values", body, actions: [{ text: "Cancel", value: null }, ...kinds] });
+  const actions = [{ text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }];
+  if (offered.length > 0) actions.unshift({ text: "CSV", value: "csv" });
+  const kind = await dialog({ title: "Save a picture or its values", body, actions });
   if (!kind) return;
   const plot = which.peek() === "" ? null : offered[Number(which.peek())];
   const name = pictureName(session.peek(), plot ? plot.title : "timeline");

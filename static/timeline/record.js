@@ -18,7 +18,7 @@ effect(() => {
     lanes.clear();
     Object.assign(taken, { list, first, next: first });
   }
-  for (let n = taken.next - first; n < list.length; n += 1) lanes.take(list[n]);
+  for (let n = Math.max(0, taken.next - first); n < list.length; n += 1) lanes.take(list[n]);
   taken.next = first + list.length;
   if (first > taken.first) {
     taken.first = first;

@@ -7,7 +7,7 @@ import { contacts, headingOf, names, plots } from "./curves.js";
 import { lanes } from "./record.js";
 
 export const AXIS = 20; // [px]; panels/timeline.css has the same
-export const LANE = 16;
+const LANE = 16;
 /** The height of a plot without the names of its curves, and that of a name [px]. */
 export const [PLOT, NAME] = [20, 13];
 const HEIGHTS = [PLOT + NAME, 500]; // the limits of the height of a plot [px]
@@ -17,7 +17,7 @@ export const MARGIN = 8;
 const GAP = 5; // between two groups
 
 /** The groups in their order. */
-export const GROUPS = [
+const GROUPS = [
   { id: "marks", text: "Marks", title: "What was printed, what users changed, contacts, rewards" },
   { id: "plan", text: "SGOMS", title: "Planning units, unit tasks, methods and operators" },
   { id: "productions", text: "Productions", title: "From when a production is chosen to when it fires" },

@@ -13,7 +13,7 @@ const MAX_CHARACTERS = 1200; // the maximum number of characters
 /** Returns what is at a position: {row, time, near, band}. */
 export function found(row, time, secondsPerPixel) {
   const near = NEAR * secondsPerPixel;
-  return row ? { row, time, near, band: row.lane?.at(time, near) ?? null } : null;
+  return { row, time, near, band: row.lane?.at(time, near) ?? null };
 }
 
 function Times({ band }) {

@@ -8,6 +8,7 @@ import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
+import { toggled } from "../parts/toggled.js";
 import { lastEvent, runStatus } from "../run_status.js";
 import { sendCommand } from "../server.js";
 import { alive, hasScene, running, session } from "../store.js";
@@ -27,10 +28,8 @@ const STEP = 1.6; // the factor of a zoom button
 function Groups() {
   lanesVersion.value;
   const there = groupsThere();
-  const shows = (id) => !hidden.value.includes(id);
-  const toggle = (id) => (hidden.value = shows(id) ? [...hidden.value, id] : hidden.value.filter((one) => one !== id));
   return html`<div class="timeline-groups" role="group" aria-label="Rows">
-    ${there.map(({ id, text, title }) => html`<button key=${id} class="chip" aria-pressed=${shows(id)} title=${title} onClick=${() => toggle(id)}>${text}</button>`)}
+    ${there.map(({ id, text, title }) => html`<button key=${id} class="chip" aria-pressed=${!hidden.value.includes(id)} title=${title} onClick=${() => (hidden.value = toggled(hidden.value, id))}>${text}</button>`)}
   </div>`;
 }
 

@@ -117,7 +117,7 @@ export async function askForVideo() {
     }
   }
 
-  const actions = [{ text: "Cancel", value: null }, { text: "Make the video", value: true, kind: "primary", busy: "making it …" }];
+  const actions = [{ text: "Make the video", kind: "primary", busy: "making it …" }];
   await dialog({ title: TITLE, body: html`<${Body} />`, actions, check });
   leaving.abort();
 }

@@ -104,6 +104,26 @@ def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages
     until(page, lambda: commands(page) == [])
 
 
+MANY = """async (count) => {
+  const { events, known, session, take } = await part("store.js");
+  const { commandOf } = await part("commands.js");
+  const before = commandOf("Mod+z").ready();
+  const { first, list } = events.value;
+  const more = Array.from({ length: count }, () => [list.at(-1)[0], "top", "nothing", {}]);
+  take([{ of: session.value.id, run: known.run, epoch: known.epoch, events: { first: first + list.length, list: more } }]);
+  return [before, events.value.first > 0, commandOf("Mod+z").ready()];
+}"""
+"""Whether a change can be undone, before and after so many events have come that the page does not keep the first ones."""
+
+
+def test_a_change_that_the_page_does_not_keep_any_more_can_be_undone(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.10")
+    assert page.evaluate(MANY, 200_001) == [False, True, True]
+
+
 @pytest.mark.slow
 def test_an_agent_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", refusals=True)

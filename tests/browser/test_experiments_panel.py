@@ -197,7 +197,8 @@ def test_a_value_that_the_model_does_not_take_is_marked_and_cannot_be_run(pages:
 
 LEVELS = """async (texts) => {
     const { levelsText, readLevels } = await part("experiments/wording.js");
-    return texts.map((text) => [readLevels(text).levels, readLevels(text).texts, levelsText(readLevels(text).levels)]);
+    const read = (text) => readLevels(text, { levels: Infinity, characters: Infinity });
+    return texts.map((text) => [read(text).levels, read(text).texts, levelsText(read(text).levels)]);
 }"""
 
 

@@ -424,7 +424,7 @@ EARLIER = """async () => {
   };
   const whole = shown();
   const list = whole.list.slice(40);
-  events.value = { list, first: 40, missing: 40, cut: false };
+  events.value = { list, first: 40 };
   const late = shown();
   for (let n = 0; n < 500 && events.value.first > 0; n += 1) await new Promise((done) => setTimeout(done, 10));
   return { whole, late, again: shown() };
@@ -446,7 +446,7 @@ SEEK = """async (time) => void (await (await part("server.js")).request({ type: 
 LATEST = """async (count) => {
   const { events } = await part("store.js");
   const { list, first } = events.value;
-  events.value = { list: list.slice(-count), first: first + list.length - count, missing: first + list.length - count, cut: false };
+  events.value = { list: list.slice(-count), first: first + list.length - count };
   return first + list.length;
 }"""
 AROUND = """async () => {
