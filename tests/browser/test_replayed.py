@@ -98,6 +98,22 @@ def test_the_clock_of_a_long_run_has_hours(browser: Browser, tmp_path: Path) -> 
         expect(page.get_by_role("slider", name="Time")).to_have_attribute("aria-valuetext", "1:06:40.00")
 
 
+def test_a_run_whose_last_events_are_left_out_failed_when_it_did(browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(make, "MAX_EVENTS", 1)
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("long.py", "", 1, None)) as recording:
+        trace.listen(recording.event_alone)
+        for time_us in (0, 600_000_000):
+            trace.emit(time_us, "top", "begin", {})
+        recording.fact("failed", "ValueError: no more")
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "replay.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Shown up to 600.00 s: the run failed at that time.")
+        expect(page.locator("#count")).to_have_text("1 of 1 events; 1 more are left out")
+
+
 def test_all_of_it_can_be_read_named_and_reached_in_both_themes(browser: Browser, replay: Path) -> None:
     with browser.new_context(viewport={"width": 1200, "height": 800}) as context:
         page = context.new_page()
