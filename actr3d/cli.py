@@ -37,7 +37,8 @@ def event_line(event: TraceEvent) -> str:
 
 def run_command(options: argparse.Namespace) -> int:
     """Runs a model file."""
-    with standard_output(apart=options.json) as out:
+    # A recorded run goes on without its output: its recording is whole.
+    with standard_output(apart=options.json, raises=not options.record) as out:
         return _run(options, out)
 
 
@@ -76,7 +77,7 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         with suppress(OSError):  # reported below
             print(to_json({"event": "result", **asdict(result)}) if options.json else result, file=out)
     unwritten = all_written(out, printed)
-    if trouble is not None and not (unwritten and isinstance(trouble, OSError)):
+    if trouble is not None and trouble is not unwritten:
         _complain(trouble)
     if unwritten:
         return _complain_of_output(unwritten)

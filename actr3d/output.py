@@ -176,10 +176,12 @@ class StandardOutput(io.TextIOWrapper):
     Args:
         number: The file descriptor.
         like: The stream whose encoding and buffering is used.
+        raises: Whether the error is raised where it occurs, too.
     """
 
-    def __init__(self, number: int, like: TextIO) -> None:
+    def __init__(self, number: int, like: TextIO, *, raises: bool = True) -> None:
         self._raw = _Raw(number, "wb", closefd=False)
+        self._raw.raises = raises
         at_once = bool(getattr(like, "write_through", False))
         buffer = io.BufferedWriter(self._raw, io.DEFAULT_BUFFER_SIZE)
         super().__init__(buffer, like.encoding, "backslashreplace", None, bool(like.line_buffering) or at_once, at_once)
@@ -192,6 +194,7 @@ class StandardOutput(io.TextIOWrapper):
 
 class _Raw(io.FileIO):
     trouble: OSError | None = None
+    raises = True
 
     def write(self, data: Any, /) -> int:
         if self.trouble is None:
@@ -199,17 +202,19 @@ class _Raw(io.FileIO):
                 return super().write(data)
             except OSError as error:
                 self.trouble = error
-                raise
+                if self.raises:
+                    raise
         return memoryview(data).nbytes
 
 
 @contextmanager
-def standard_output(apart: bool) -> Generator[TextIO]:
+def standard_output(apart: bool, *, raises: bool = True) -> Generator[TextIO]:
     """Reserves standard output for one writer inside the block.
 
     Args:
         apart: Whether to redirect all other output: what this process, or one that it starts, writes to file descriptor 1 then
             goes to standard error, so that it cannot split a line.
+        raises: As `StandardOutput` has it.
 
     Yields:
         The stream to write to: a `StandardOutput`; or the unchanged `sys.stdout` if that is not a file, or another file.
@@ -224,11 +229,11 @@ def standard_output(apart: bool) -> Generator[TextIO]:
         yield out
     elif apart:
         with _moved(out) as number:
-            own = StandardOutput(number, out)
+            own = StandardOutput(number, out, raises=raises)
             own.reconfigure(encoding="utf-8", errors="backslashreplace")
             yield own
     else:
-        yield StandardOutput(1, out)
+        yield StandardOutput(1, out, raises=raises)
 
 
 @contextmanager
