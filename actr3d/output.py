@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Generator, Iterable
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO, cast
 
@@ -219,6 +220,8 @@ def standard_output(apart: bool, *, raises: bool = True) -> Generator[TextIO]:
     Yields:
         The stream to write to: a `StandardOutput`; or the unchanged `sys.stdout` if that is not a file, or another file.
     """
+    if sys.stdout is None:  # it was closed before the command started
+        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
     out = sys.stdout
     try:
         reserved = out.fileno() == 1
@@ -264,3 +267,10 @@ def all_written(out: TextIO, printed: ModelOutput | None) -> OSError | None:
             printed.finish()
         out.flush()
     return out.trouble if isinstance(out, StandardOutput) else None
+
+
+def report_unwritten(error: OSError) -> int:
+    """Prints why the output cannot be written, unless its reader has only closed it; returns the exit code."""
+    if not isinstance(error, BrokenPipeError):
+        print(f"error: cannot write the output: {error.strerror or error}", file=sys.stderr)
+    return 1
