@@ -98,6 +98,17 @@ def test_the_clock_of_a_long_run_has_hours(browser: Browser, tmp_path: Path) -> 
         expect(page.get_by_role("slider", name="Time")).to_have_attribute("aria-valuetext", "1:06:40.00")
 
 
+def test_a_simulation_that_was_left_at_once_has_no_scene(browser: Browser, tmp_path: Path) -> None:
+    with Simulation(Scene(parts=(Floor(), Mannequin())), seed=1).record(tmp_path / "run.sqlite"):
+        pass
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "replay.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Shown up to 0.00 s: the run was not over at that time.")
+        expect(page.locator("#empty")).to_have_text("No scene is stored.")
+
+
 def test_a_run_whose_last_events_are_left_out_failed_when_it_did(browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(make, "MAX_EVENTS", 1)
     trace = Trace("all")

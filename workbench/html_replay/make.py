@@ -57,7 +57,7 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
         facts = _facts(recorded, models)
         simulations = simulations_of(recorded)
         events, agents = _events(recorded, _changes(recorded, simulations))
-        found = [one for one in simulations if one.mj_model.ngeom > 0]
+        found = [one for one in simulations if one.mj_model.ngeom > 0 and any(one.past.between(0, None))]
         scenes = [_scene(one, list(agents[one.number]), len(found)) for one in found]
         content = {**facts, "palette": palette(), "events": events, "scenes": scenes}
     # No text from a model can close the HTML element that contains it.

@@ -31,7 +31,7 @@ try {
 if (!drawing) {
   get("canvas").hidden = true;
   get("empty").hidden = false;
-  get("empty").textContent ||= "This run has no world to show.";
+  get("empty").textContent ||= "No scene is stored.";
 }
 
 let now = 0, playing = false, before = 0;
