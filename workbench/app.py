@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 from collections.abc import AsyncGenerator, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from functools import cache
@@ -17,7 +18,7 @@ from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, reason_of
 from actr3d.values import escape_surrogates
 from workbench import experiment_routes, language_routes, recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
@@ -142,7 +143,9 @@ def _error_response(problem: str, status: int, headers: Mapping[str, str] | None
 
 
 async def _refused(_: Request, error: Exception) -> JSONResponse:
-    return _error_response(str(error), getattr(error, "status", 409))
+    file = getattr(error, "filename", None)
+    where = "" if file is None else f"'{Path(os.fsdecode(file)).name}': "
+    return _error_response(where + reason_of(error), getattr(error, "status", 409))
 
 
 async def _misunderstood(_: Request, error: Exception) -> JSONResponse:

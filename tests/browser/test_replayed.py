@@ -109,6 +109,18 @@ def test_a_simulation_that_was_left_at_once_has_no_scene(browser: Browser, tmp_p
         expect(page.locator("#empty")).to_have_text("No scene is stored.")
 
 
+def test_a_file_that_was_cut_off_says_why_nothing_plays(browser: Browser, tmp_path: Path) -> None:
+    with Recording(tmp_path / "run.sqlite", program_facts("cut.py", "", 1, None)):
+        pass
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    whole = (tmp_path / "replay.html").read_text(encoding="utf-8")
+    (tmp_path / "cut.html").write_text(whole[: whole.index('"events"')], encoding="utf-8")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "cut.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Nothing plays: the file is not whole, or no scripts run here.")
+
+
 def test_a_run_whose_last_events_are_left_out_failed_when_it_did(browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(make, "MAX_EVENTS", 1)
     trace = Trace("all")
