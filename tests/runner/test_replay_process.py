@@ -228,7 +228,7 @@ def test_a_program_that_was_interrupted_in_a_production_agrees_until_then(
     assert main(["replay", str(path)]) == 0
     out = capsys.readouterr().out
     assert out.startswith("agrees up to the end of the recording: ")
-    assert out.endswith(f"; the recording says that the run was interrupted at 0.15 s, which cannot be checked{note}\n")
+    assert out.endswith(f"; the recording says that the run was not over at 0.15 s, which cannot be checked{note}\n")
 
 
 def test_a_program_that_went_on_after_it_was_interrupted_is_not_said_to_agree(
