@@ -14,6 +14,7 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, PlainTextResponse
+from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
@@ -39,6 +40,13 @@ from workbench.worker.workers import Workers
 
 DAY = 86_400.0
 """How often old deleted files are removed from the trash folder [s]."""
+
+
+class Refusal(BaseModel):
+    """The answer to a request that is not carried out."""
+
+    error: str
+    """Why."""
 
 
 def make_app(
@@ -79,7 +87,14 @@ def make_app(
         await leave()
         await asyncio.wait([tidying])
 
-    app = FastAPI(title="ACT-R 3D workbench", docs_url=None, redoc_url=None, openapi_url="/api/openapi.json", lifespan=life)
+    app = FastAPI(
+        title="ACT-R 3D workbench",
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/api/openapi.json",
+        lifespan=life,
+        responses={"default": {"model": Refusal, "description": "It is refused."}},
+    )
     app.state.leave = leave
     app.state.sessions = sessions
     app.state.experiments = experiments
