@@ -133,7 +133,7 @@ def test_a_run_whose_last_events_are_left_out_failed_when_it_did(browser: Browse
     with browser.new_context(offline=True) as context:
         page = context.new_page()
         page.goto((tmp_path / "replay.html").as_uri())
-        expect(page.locator("#outcome")).to_have_text("Shown up to 600.00 s: the run failed at that time.")
+        expect(page.locator("#outcome")).to_have_text("Shown up to 600.00 s: the run failed at that time (ValueError: no more).")
         expect(page.locator("#count")).to_have_text("1 of 1 events; 1 more are left out")
 
 

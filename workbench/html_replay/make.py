@@ -13,7 +13,7 @@ from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path
 from actr3d.trace_kinds import GROUPS, KINDS
-from actr3d.values import plain_to_json
+from actr3d.values import plain_to_json, shortened
 from workbench.curves import stride
 from workbench.files import ModelFolder
 from workbench.geom_colours import dress
@@ -38,7 +38,7 @@ MAX_EVENTS = 50_000
 MAX_STAGED = 2_000
 """If the stage has more corners, those of its bounding box are used instead."""
 LONGEST = 400
-"""Maximum length of an event's text [characters]."""
+"""Maximum length of the text of an event or error [characters]."""
 
 
 def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
@@ -92,7 +92,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
         "parameters": _plain(facts.get("parameters", {})),
         "branched": branched,
         "ended": None if ended is None else str(ended.get("by")),
-        "failed": facts.get("failed") is not None,
+        "failed": None if facts.get("failed") is None else shortened(str(facts["failed"]), LONGEST),
     }
 
 
@@ -146,7 +146,7 @@ def _text(event: TraceEvent, changes: ChangeTexts) -> str:
         text = changes.text(event)
     else:
         text = "  ".join(f"{name}={value_text(value)}" for name, value in data.items())
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+    return shortened(text, LONGEST)
 
 
 def _agent(event: TraceEvent) -> str:
