@@ -37,8 +37,7 @@ def event_line(event: TraceEvent) -> str:
 
 def run_command(options: argparse.Namespace) -> int:
     """Runs a model file."""
-    # A recorded run goes on without its output: its recording is whole.
-    with standard_output(apart=options.json, raises=not options.record) as out:
+    with standard_output(apart=options.json) as out:
         return _run(options, out)
 
 
@@ -518,6 +517,8 @@ def _command(arguments: list[str]) -> int:
         _check_run(options, words, arguments)
     elif words:
         parser.error(f"unrecognized arguments: {' '.join(words)}")
+    if isinstance(sys.stdout, StandardOutput) and getattr(options, "record", None):
+        sys.stdout.raises = False  # a recorded run goes on without its output: its recording is whole
     try:
         return options.function(options)
     except KeyboardInterrupt:

@@ -176,13 +176,12 @@ class StandardOutput(io.TextIOWrapper):
 
     Args:
         number: The file descriptor.
-        like: The stream whose encoding and buffering is used.
-        raises: Whether the error is raised where it occurs, too.
+        like: The stream whose encoding and buffering, and whose `raises` if it has one, is used.
     """
 
-    def __init__(self, number: int, like: TextIO, *, raises: bool = True) -> None:
+    def __init__(self, number: int, like: TextIO) -> None:
         self._raw = _Raw(number, "wb", closefd=False)
-        self._raw.raises = raises
+        self.raises = getattr(like, "raises", True)
         at_once = bool(getattr(like, "write_through", False))
         buffer = io.BufferedWriter(self._raw, io.DEFAULT_BUFFER_SIZE)
         super().__init__(buffer, like.encoding, "backslashreplace", None, bool(like.line_buffering) or at_once, at_once)
@@ -191,6 +190,15 @@ class StandardOutput(io.TextIOWrapper):
     def trouble(self) -> OSError | None:
         """The error of this output, if any."""
         return self._raw.trouble
+
+    @property
+    def raises(self) -> bool:
+        """Whether the error is raised where it occurs, too."""
+        return self._raw.raises
+
+    @raises.setter
+    def raises(self, raises: bool) -> None:
+        self._raw.raises = raises
 
 
 class _Raw(io.FileIO):
@@ -209,13 +217,12 @@ class _Raw(io.FileIO):
 
 
 @contextmanager
-def standard_output(apart: bool, *, raises: bool = True) -> Generator[TextIO]:
+def standard_output(apart: bool) -> Generator[TextIO]:
     """Reserves standard output for one writer inside the block.
 
     Args:
         apart: Whether to redirect all other output: what this process, or one that it starts, writes to file descriptor 1 then
             goes to standard error, so that it cannot split a line.
-        raises: As `StandardOutput` has it.
 
     Yields:
         The stream to write to: a `StandardOutput`; or the unchanged `sys.stdout` if that is not a file, or another file.
@@ -232,11 +239,11 @@ def standard_output(apart: bool, *, raises: bool = True) -> Generator[TextIO]:
         yield out
     elif apart:
         with _moved(out) as number:
-            own = StandardOutput(number, out, raises=raises)
+            own = StandardOutput(number, out)
             own.reconfigure(encoding="utf-8", errors="backslashreplace")
             yield own
     else:
-        yield StandardOutput(1, out, raises=raises)
+        yield StandardOutput(1, out)
 
 
 @contextmanager

@@ -189,8 +189,9 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
 
 def _announce(folder: Path, address: str) -> OSError | None:
     """Prints the address as the last line; returns why it cannot be written, if so."""
-    with standard_output(apart=False, raises=False) as out:
-        print(f"models: {folder}\n{address}", file=out)
+    with standard_output(apart=False) as out:
+        with suppress(OSError):  # returned
+            print(f"models: {folder}\n{address}", file=out)
         return all_written(out, None)
 
 
