@@ -17,8 +17,8 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
-from actr3d.errors import DesignError, SettingError, alternatives, reason_of
-from actr3d.output import ModelOutput, StandardOutput, all_written, printing_to, standard_output
+from actr3d.errors import DesignError, SettingError, alternatives
+from actr3d.output import ModelOutput, StandardOutput, all_written, printing_to, report_unwritten, standard_output
 from actr3d.parameter_schema import Parameter
 from actr3d.recording.schema import versions
 from actr3d.runner.before_exit import before_the_end
@@ -66,7 +66,7 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
             result = run_model(options.file, limits, settings=partial(_settings, options), record=options.record)
     except (SystemExit, KeyboardInterrupt):
         if unwritten := all_written(out, printed):
-            return _complain_of_output(unwritten)
+            return report_unwritten(unwritten)
         raise
     except BaseException as error:  # noqa: BLE001 - every error of a model is shown to its author
         trouble = error
@@ -76,10 +76,10 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         with suppress(OSError):  # reported below
             print(to_json({"event": "result", **asdict(result)}) if options.json else result, file=out)
     unwritten = all_written(out, printed)
-    if trouble is not None and not (unwritten and isinstance(trouble, OSError)):
+    if trouble is not None and trouble is not unwritten:
         _complain(trouble)
     if unwritten:
-        return _complain_of_output(unwritten)
+        return report_unwritten(unwritten)
     return 0 if trouble is None else 2 if isinstance(trouble, SettingError) else 1
 
 
@@ -128,17 +128,10 @@ def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
         finished()
         sys.stdout.flush()
     unwritten = all_written(out, printed)
-    code = 0 if unwritten is None else _complain_of_output(unwritten)
+    code = 0 if unwritten is None else report_unwritten(unwritten)
     with suppress(Exception):
         sys.stderr.flush()
     os._exit(code)
-
-
-def _complain_of_output(error: OSError) -> int:
-    """Prints why the output cannot be written, unless its reader has only closed it."""
-    if not isinstance(error, BrokenPipeError):
-        print(f"error: cannot write the output: {reason_of(error)}", file=sys.stderr)
-    return 1
 
 
 def replay_command(options: argparse.Namespace) -> int:
@@ -496,8 +489,6 @@ def _numbers(options: argparse.Namespace) -> dict[str, Any]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if sys.stdout is None:  # it was closed before the command started
-        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
     given = list(sys.argv[1:] if arguments is None else arguments)
     with standard_output(apart=False) as out, printing_to(out):
         code: Any = 0
@@ -513,7 +504,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             unwritten = all_written(out, None)
             if unwritten is None:
                 return code
-        _complain_of_output(unwritten)
+        report_unwritten(unwritten)
         return code if code not in (0, 1) else UNWRITTEN.get(given[0], 1)
 
 
@@ -526,6 +517,8 @@ def _command(arguments: list[str]) -> int:
         _check_run(options, words, arguments)
     elif words:
         parser.error(f"unrecognized arguments: {' '.join(words)}")
+    if isinstance(sys.stdout, StandardOutput) and getattr(options, "record", None):
+        sys.stdout.raises = False  # a recorded run goes on without its output: its recording is whole
     try:
         return options.function(options)
     except KeyboardInterrupt:

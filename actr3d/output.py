@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Generator, Iterable
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO, cast
 
@@ -175,11 +176,12 @@ class StandardOutput(io.TextIOWrapper):
 
     Args:
         number: The file descriptor.
-        like: The stream whose encoding and buffering is used.
+        like: The stream whose encoding and buffering, and whose `raises` if it has one, is used.
     """
 
     def __init__(self, number: int, like: TextIO) -> None:
         self._raw = _Raw(number, "wb", closefd=False)
+        self.raises = getattr(like, "raises", True)
         at_once = bool(getattr(like, "write_through", False))
         buffer = io.BufferedWriter(self._raw, io.DEFAULT_BUFFER_SIZE)
         super().__init__(buffer, like.encoding, "backslashreplace", None, bool(like.line_buffering) or at_once, at_once)
@@ -189,9 +191,19 @@ class StandardOutput(io.TextIOWrapper):
         """The error of this output, if any."""
         return self._raw.trouble
 
+    @property
+    def raises(self) -> bool:
+        """Whether the error is raised where it occurs, too."""
+        return self._raw.raises
+
+    @raises.setter
+    def raises(self, raises: bool) -> None:
+        self._raw.raises = raises
+
 
 class _Raw(io.FileIO):
     trouble: OSError | None = None
+    raises = True
 
     def write(self, data: Any, /) -> int:
         if self.trouble is None:
@@ -199,7 +211,8 @@ class _Raw(io.FileIO):
                 return super().write(data)
             except OSError as error:
                 self.trouble = error
-                raise
+                if self.raises:
+                    raise
         return memoryview(data).nbytes
 
 
@@ -214,6 +227,8 @@ def standard_output(apart: bool) -> Generator[TextIO]:
     Yields:
         The stream to write to: a `StandardOutput`; or the unchanged `sys.stdout` if that is not a file, or another file.
     """
+    if sys.stdout is None:  # it was closed before the command started
+        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
     out = sys.stdout
     try:
         reserved = out.fileno() == 1
@@ -259,3 +274,10 @@ def all_written(out: TextIO, printed: ModelOutput | None) -> OSError | None:
             printed.finish()
         out.flush()
     return out.trouble if isinstance(out, StandardOutput) else None
+
+
+def report_unwritten(error: OSError) -> int:
+    """Prints why the output cannot be written, unless its reader has only closed it; returns the exit code."""
+    if not isinstance(error, BrokenPipeError):
+        print(f"error: cannot write the output: {error.strerror or error}", file=sys.stderr)
+    return 1

@@ -14,7 +14,9 @@ import pytest
 
 import actr3d
 from actr3d.cli import main
+from actr3d.recording import Recorded
 from tests.helpers.commands import run_command
+from tests.helpers.paths import MODELS
 
 COMMAND = [sys.executable, "-c", "import sys; from actr3d.cli import main; sys.exit(main(sys.argv[1:]))"]
 
@@ -211,6 +213,21 @@ def test_a_closed_pipe_is_no_error(tmp_path: Path) -> None:
         assert process.wait(timeout=60) == 1
 
 
+@pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
+def test_a_run_is_recorded_whole_though_nobody_reads_its_output(tmp_path: Path, words: list[str]) -> None:
+    (tmp_path / "model.py").write_text((MODELS / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
+    reading, writing = os.pipe()
+    os.close(reading)
+    command = [*COMMAND, "run", "model.py", "--record", "run", *words]
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=writing, stderr=subprocess.PIPE, timeout=60, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (1, b"")
+    with Recorded(tmp_path / "run") as recorded:
+        assert recorded.finished
+        assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["2", "3", "4", "5"]
+
+
 def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> None:
     (tmp_path / "model.py").write_text("print('\u2211')", encoding="utf-8")
     command, env = [*COMMAND, "run", "model.py"], {**os.environ, "PYTHONIOENCODING": "ascii"}
@@ -319,6 +336,7 @@ def test_nothing_comes_between_the_lines_of_json(tmp_path: Path) -> None:
         ("try:\n    for i in range(9999): print(i)\nexcept OSError: pass", ""),
         ("import ccm, sys\nprint('x')\nsys.exit(3)", ""),
         ("print('x')\n1 / 0", "ZeroDivisionError: division by zero\n"),
+        ("try: print('x' * 100000)\nexcept OSError: pass\nopen('no')", "FileNotFoundError: [Errno 2] No such file or directory: 'no'\n"),
     ],
 )
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 from collections.abc import AsyncGenerator, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from functools import cache
@@ -13,11 +14,12 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, PlainTextResponse
+from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, reason_of
 from actr3d.values import escape_surrogates
 from workbench import experiment_routes, language_routes, recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
@@ -38,6 +40,13 @@ from workbench.worker.workers import Workers
 
 DAY = 86_400.0
 """How often old deleted files are removed from the trash folder [s]."""
+
+
+class Refusal(BaseModel):
+    """The answer to a request that is not carried out."""
+
+    error: str
+    """Why."""
 
 
 def make_app(
@@ -78,7 +87,14 @@ def make_app(
         await leave()
         await asyncio.wait([tidying])
 
-    app = FastAPI(title="ACT-R 3D workbench", docs_url=None, redoc_url=None, openapi_url="/api/openapi.json", lifespan=life)
+    app = FastAPI(
+        title="ACT-R 3D workbench",
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/api/openapi.json",
+        lifespan=life,
+        responses={"default": {"model": Refusal, "description": "It is refused."}},
+    )
     app.state.leave = leave
     app.state.sessions = sessions
     app.state.experiments = experiments
@@ -142,7 +158,9 @@ def _error_response(problem: str, status: int, headers: Mapping[str, str] | None
 
 
 async def _refused(_: Request, error: Exception) -> JSONResponse:
-    return _error_response(str(error), getattr(error, "status", 409))
+    file = getattr(error, "filename", None)
+    where = "" if file is None else f"'{Path(os.fsdecode(file)).name}': "
+    return _error_response(where + reason_of(error), getattr(error, "status", 409))
 
 
 async def _misunderstood(_: Request, error: Exception) -> JSONResponse:

@@ -18,6 +18,7 @@ from contextlib import closing, suppress
 from functools import partial
 from pathlib import Path
 
+from actr3d.output import all_written, report_unwritten, standard_output
 from workbench.auth import LOOPBACK, REFUSAL, Gate, Token
 from workbench.built_manual import build_manual
 from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, RetentionLimits
@@ -164,11 +165,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from workbench.server import serve
 
         limits = RetentionLimits(number=options.recordings, megabytes=options.recordings_size)
-        started = partial(_announce, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
+        address = f"http://{host}:{port}/?token={gate.token.reveal()}"
         app = make_app(folder, gate, memory=options.memory, limits=limits, fork_server=fork_server)
         if interrupted.is_set():  # the import of a library may have swallowed the exception
             raise KeyboardInterrupt
-        serve(app, listening, started)
+        if unwritten := _announce(folder, address):
+            return report_unwritten(unwritten)
+        serve(app, listening, partial(_open, address, not options.no_browser))
     except KeyboardInterrupt:
         return 130
     return 0
@@ -184,11 +187,16 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
     return f"the models folder '{where}' cannot be used: {'it is a file' if where.is_file() else reason}"
 
 
-def _announce(folder: Path, url: str, token: Token, browse: bool) -> None:
-    """Prints the address as the last line; opens it in the browser, and builds the manual for its user if there is none."""
-    address = f"{url}/?token={token.reveal()}"
-    print(f"models: {folder}")
-    print(address, flush=True)
+def _announce(folder: Path, address: str) -> OSError | None:
+    """Prints the address as the last line; returns why it cannot be written, if so."""
+    with standard_output(apart=False) as out:
+        with suppress(OSError):  # returned
+            print(f"models: {folder}\n{address}", file=out)
+        return all_written(out, None)
+
+
+def _open(address: str, browse: bool) -> None:
+    """Opens the address in the browser, and builds the manual for its user if there is none."""
     if browse:
         build_manual()
         threading.Thread(target=_browse, args=(address,), daemon=True).start()

@@ -17,7 +17,7 @@ from workbench.disconnects import while_connected
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
-from workbench.open_file import OpenFile
+from workbench.open_file import OpenFile, of_kinds
 from workbench.protocol import problem_of
 from workbench.recording_routes import Trusting
 from workbench.routes import Id, code_json, json_response, made, sessions_of
@@ -204,7 +204,7 @@ async def make_report(request: Request, experiment: Id, body: Trusting | None = 
     return {"report": experiment}
 
 
-@router.get("/experiments/{experiment}/report/index.html")
+@router.get("/experiments/{experiment}/report/index.html", **of_kinds([REPORT_FILES[".html"]]))
 def report(request: Request, experiment: Id) -> Response:
     """Returns the report of an experiment, an HTML page; no script in it runs."""
     response = _report_file(request, experiment, PAGE)
@@ -212,7 +212,7 @@ def report(request: Request, experiment: Id) -> Response:
     return response
 
 
-@router.get("/experiments/{experiment}/report/{folder}/{file}")
+@router.get("/experiments/{experiment}/report/{folder}/{file}", **of_kinds(REPORT_FILES.values()))
 def report_file(request: Request, experiment: Id, folder: Literal["figures", "tables"], file: str) -> Response:
     """Returns a figure or table of the report, for a download."""
     return _report_file(request, experiment, f"{folder}/{file}", f"{experiment}-{file}")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from io import FileIO
+from typing import Any
 
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
@@ -15,6 +16,11 @@ from workbench.disconnects import DisconnectedError, while_connected
 
 PART = 256 * 1024
 """How much is read and sent at a time [bytes]."""
+
+
+def of_kinds(media_types: Iterable[str]) -> dict[str, Any]:
+    """Returns the arguments of a route that describe responses which are files of some media types."""
+    return {"response_class": Response, "responses": {200: {"content": {kind.partition(";")[0]: {} for kind in media_types}}}}
 
 
 class OpenFile(Response):

@@ -19,7 +19,7 @@ from workbench.auth import BODY_TIME, LARGEST_UPLOAD, UPLOAD_TYPE, too_large
 from workbench.disconnects import DisconnectedError
 from workbench.labels import Label
 from workbench.listing import MAX_LISTED
-from workbench.open_file import OpenFile
+from workbench.open_file import OpenFile, of_kinds
 from workbench.page_commands import Name
 from workbench.page_message import PageMessage
 from workbench.recording_index import Summary
@@ -167,7 +167,7 @@ async def recording(request: Request, recording: Id) -> Response:
     return json_response(to_json(await _recording(sessions_of(request), recording)))
 
 
-@router.get("/recordings/{recording}/file")
+@router.get("/recordings/{recording}/file", **of_kinds(KINDS.values()))
 async def download(request: Request, recording: Id, form: File = "sqlite") -> Response:
     """Returns a file: the recording itself, its events or states as CSV, or an HTML file that plays its scene beside its trace.
 

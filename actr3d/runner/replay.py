@@ -273,7 +273,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
 
 
 def _recorded_end(recorded: Recorded) -> str | None:
-    """Returns how and when a run was interrupted; None if it ended by itself."""
+    """Returns up to where a run is recorded that was left, stopped or interrupted, or goes on; None if it ended by itself."""
     facts = recorded.facts
     if recorded.over:
         return None
@@ -287,5 +287,5 @@ def _recorded_end(recorded: Recorded) -> str | None:
         return f"the run failed after {at:g} s ({facts['failed']})"
     if facts.get("ended") is None and facts.get("whole") and not facts.get("built"):
         return None  # the end of a run that a program makes is not recorded
-    how = "left" if facts.get("ended") is not None else "stopped" if facts.get("whole") else "interrupted"
+    how = "left" if facts.get("ended") is not None else "stopped" if facts.get("whole") else "not over"
     return f"the recording says that the run was {how} at {at:g} s, which cannot be checked"

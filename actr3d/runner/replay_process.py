@@ -67,7 +67,7 @@ def replay_in_process(file: str, *, trust: bool, any_version: bool) -> ReplayRes
         order = {"path": sys.path, "file": file, "to": str(to), "trust": trust, "any_version": any_version}
         flags: list[str] = subprocess._args_from_interpreter_flags()  # pyright: ignore # made for this purpose, but not public
         command: list[str] = [sys.executable, *flags, "-P", "-c", _CHILD, json.dumps(order)]
-        process = subprocess.Popen(command, env={**os.environ, "PYTHONHASHSEED": "0"})
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, env={**os.environ, "PYTHONHASHSEED": "0"})
         try:
             status = process.wait()
         finally:

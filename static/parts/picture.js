@@ -70,7 +70,7 @@ export async function savePicture(picture, kind) {
 export function saveFile(name, blob) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
-  link.download = name.replace(/[^\w.+-]+/g, "_");
+  link.download = name.replace(/[^\p{L}\p{M}\p{N}_.+-]+/gu, "_");
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

@@ -177,3 +177,9 @@ def test_tabs_stay_where_they_are_whichever_is_open(page: Page) -> None:
         open_tab(page, title)
         expect(page.get_by_role("tab", name=title)).to_have_attribute("aria-selected", "true")
         assert places() == before
+
+
+def test_a_saved_file_keeps_the_letters_of_its_name(blank: Page) -> None:
+    with blank.expect_download() as download:
+        blank.evaluate("async () => (await part('parts/picture.js')).saveFile('猫/größe <1>.csv', new Blob(['1']))")
+    assert download.value.suggested_filename == "猫_größe_1_.csv"

@@ -98,6 +98,45 @@ def test_the_clock_of_a_long_run_has_hours(browser: Browser, tmp_path: Path) -> 
         expect(page.get_by_role("slider", name="Time")).to_have_attribute("aria-valuetext", "1:06:40.00")
 
 
+def test_a_simulation_that_was_left_at_once_has_no_scene(browser: Browser, tmp_path: Path) -> None:
+    with Simulation(Scene(parts=(Floor(), Mannequin())), seed=1).record(tmp_path / "run.sqlite"):
+        pass
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "replay.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Shown up to 0.00 s: the run was not over at that time.")
+        expect(page.locator("#empty")).to_have_text("No scene is stored.")
+
+
+def test_a_file_that_was_cut_off_says_why_nothing_plays(browser: Browser, tmp_path: Path) -> None:
+    with Recording(tmp_path / "run.sqlite", program_facts("cut.py", "", 1, None)):
+        pass
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    whole = (tmp_path / "replay.html").read_text(encoding="utf-8")
+    (tmp_path / "cut.html").write_text(whole[: whole.index('"events"')], encoding="utf-8")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "cut.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Nothing plays: the file is not whole, or no scripts run here.")
+
+
+def test_a_run_whose_last_events_are_left_out_failed_when_it_did(browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(make, "MAX_EVENTS", 1)
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("long.py", "", 1, None)) as recording:
+        trace.listen(recording.event_alone)
+        for time_us in (0, 600_000_000):
+            trace.emit(time_us, "top", "begin", {})
+        recording.fact("failed", "ValueError: no more")
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "replay.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Shown up to 600.00 s: the run failed at that time (ValueError: no more).")
+        expect(page.locator("#count")).to_have_text("1 of 1 events; 1 more are left out")
+
+
 def test_all_of_it_can_be_read_named_and_reached_in_both_themes(browser: Browser, replay: Path) -> None:
     with browser.new_context(viewport={"width": 1200, "height": 800}) as context:
         page = context.new_page()

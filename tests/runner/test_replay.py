@@ -286,7 +286,7 @@ def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path) -> None:
 CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
 
 
-INTERRUPTED = "the recording says that the run was interrupted at 0.25 s, which cannot be checked"
+INTERRUPTED = "the recording says that the run was not over at 0.25 s, which cannot be checked"
 
 
 def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path) -> None:

@@ -57,6 +57,20 @@ def record(path: Path, first: str = "pass", last: str = "pass") -> None:
     assert run_recorded(path, PROGRAM.format(first=first, last=last)) == 0
 
 
+def test_a_program_that_reads_its_input_finds_none_in_a_replay(path: Path) -> None:
+    reading, writing = os.pipe()
+    os.write(writing, b"Ann\n")
+    command = [sys.executable, "-m", "actr3d", "run", "model.py", "--record", path.name]
+    path.with_name("model.py").write_text("print('Hello', input())\n", encoding="utf-8")
+    subprocess.run(command, cwd=path.parent, stdin=reading, check=True, timeout=60)
+    again = [sys.executable, "-m", "actr3d", "replay", path.name]
+    done = subprocess.run(again, cwd=path.parent, stdin=reading, capture_output=True, text=True, timeout=60, check=False)  # nothing comes
+    os.close(reading)
+    os.close(writing)
+    assert done.returncode == 1
+    assert done.stdout.startswith("differs: the run ended (EOFError: EOF when reading a line) after 0 events; ")
+
+
 @pytest.mark.daily(5)
 @pytest.mark.parametrize(
     ("does", "how"),
@@ -214,7 +228,7 @@ def test_a_program_that_was_interrupted_in_a_production_agrees_until_then(
     assert main(["replay", str(path)]) == 0
     out = capsys.readouterr().out
     assert out.startswith("agrees up to the end of the recording: ")
-    assert out.endswith(f"; the recording says that the run was interrupted at 0.15 s, which cannot be checked{note}\n")
+    assert out.endswith(f"; the recording says that the run was not over at 0.15 s, which cannot be checked{note}\n")
 
 
 def test_a_program_that_went_on_after_it_was_interrupted_is_not_said_to_agree(

@@ -14,6 +14,7 @@ import pytest
 from tests.helpers.asgi_client import GATE
 from tests.helpers.workbench_server import Served
 from workbench.app import make_app
+from workbench.auth import UPLOAD_TYPE
 
 APP = make_app(Path("/tmp"), GATE)
 DESCRIPTION: dict[str, Any] = APP.openapi()
@@ -72,6 +73,26 @@ def told(answer: httpx.Response) -> None:
         assert error.keys() <= {"error", "result"}, error
         assert isinstance(error["error"], str)
         assert error["error"]
+
+
+@pytest.mark.parametrize(("method", "path"), OPERATIONS, ids=[" ".join(operation) for operation in OPERATIONS])
+def test_the_description_says_how_a_request_is_refused(method: str, path: str) -> None:
+    success, refusal = DESCRIPTION["paths"][path][method]["responses"].items()
+    assert (success[0][0], refusal[0]) == ("2", "default")
+    assert list(resolved(refusal[1]["content"]["application/json"]["schema"])["properties"]) == ["error"]
+
+
+def test_the_description_says_of_which_kinds_files_are() -> None:
+    found = {
+        path: list(DESCRIPTION["paths"][path]["get"]["responses"]["200"]["content"])
+        for _, path in OPERATIONS
+        if "/file" in path or "/report/" in path
+    }
+    assert found == {
+        "/api/recordings/{recording}/file": [UPLOAD_TYPE, "text/csv", "text/html"],
+        "/api/experiments/{experiment}/report/index.html": ["text/html"],
+        "/api/experiments/{experiment}/report/{folder}/{file}": ["text/html", "image/svg+xml", "image/png", "text/csv"],
+    }
 
 
 @pytest.mark.daily(4)

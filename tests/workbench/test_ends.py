@@ -171,3 +171,11 @@ def test_an_interruption_while_a_library_is_loaded_ends_it_quietly_even_if_the_l
         finally:
             process.kill()
     assert (process.returncode, printed, complaints) == (130, "", "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_a_workbench_whose_address_cannot_be_written_ends_with_the_reason(tmp_path: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        command = [sys.executable, "-m", "workbench", str(tmp_path), "--no-browser"]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=PATIENCE, check=False)
+    assert (done.returncode, done.stderr) == (1, "error: cannot write the output: No space left on device\n")

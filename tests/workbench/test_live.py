@@ -24,10 +24,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import one_of
 from websockets.typing import Subprotocol
 
+from tests.helpers.full_disk import full_disk
 from tests.helpers.paths import MODELS
 from tests.helpers.workbench_server import Served, served
 from tests.workbench.test_bad_input import APP, DESCRIPTION, OPERATIONS
 from workbench import cli
+from workbench.auth import UPLOAD_TYPE
 from workbench.cli import listen, listen_for, main, port_of
 from workbench.page_commands import COMMANDS
 
@@ -48,6 +50,13 @@ def test_the_token_is_in_no_list_of_processes(server: Served) -> None:
                 assert server.token.encode() not in (folder / name).read_bytes(), folder
             except OSError:
                 continue
+
+
+def test_a_full_disk_is_said_in_plain_words(server: Served) -> None:
+    headers = {"content-type": UPLOAD_TYPE}
+    with full_disk(lambda: [server.process.pid]):
+        answer = server.client.post(f"{server.url}/api/recordings/import?name=x", content=b"a recording", headers=headers)
+    assert (answer.status_code, answer.json()) == (409, {"error": "File too large"})
 
 
 def test_a_browser_comes_in_with_the_address_only(server: Served) -> None:

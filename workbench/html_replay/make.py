@@ -9,12 +9,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path
 from actr3d.trace_kinds import GROUPS, KINDS
+from actr3d.values import plain_to_json, shortened
 from workbench.curves import stride
 from workbench.files import ModelFolder
 from workbench.geom_colours import dress
@@ -39,7 +38,7 @@ MAX_EVENTS = 50_000
 MAX_STAGED = 2_000
 """If the stage has more corners, those of its bounding box are used instead."""
 LONGEST = 400
-"""Maximum length of an event's text [characters]."""
+"""Maximum length of the text of an event or error [characters]."""
 
 
 def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
@@ -58,16 +57,17 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
         facts = _facts(recorded, models)
         simulations = simulations_of(recorded)
         events, agents = _events(recorded, _changes(recorded, simulations))
-        found = [one for one in simulations if one.mj_model.ngeom > 0]
+        found = [one for one in simulations if one.mj_model.ngeom > 0 and any(one.past.between(0, None))]
         scenes = [_scene(one, list(agents[one.number]), len(found)) for one in found]
         content = {**facts, "palette": palette(), "events": events, "scenes": scenes}
     # No text from a model can close the HTML element that contains it.
-    data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    data = plain_to_json(content).replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
     page, style = ((folder / name).read_text(encoding="utf-8") for name in ("page.html", "style.css"))
     parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": style, "SCRIPT": _scripts(folder)}
     pieces = page.split("@@")
-    to.write_text("".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces)), encoding="utf-8")
+    whole = "".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces))
+    to.write_text(whole, encoding="utf-8", errors="backslashreplace")  # a path may have bytes that are not UTF-8
 
 
 def _scripts(folder: Path) -> str:
@@ -92,7 +92,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
         "parameters": _plain(facts.get("parameters", {})),
         "branched": branched,
         "ended": None if ended is None else str(ended.get("by")),
-        "failed": facts.get("failed") is not None,
+        "failed": None if facts.get("failed") is None else shortened(str(facts["failed"]), LONGEST),
     }
 
 
@@ -105,21 +105,23 @@ def _changes(recorded: Recorded, simulations: Iterable[RecordedSimulation]) -> C
 
 
 def _events(recorded: Recorded, changes: ChangeTexts) -> tuple[dict[str, Any], Mapping[int, Iterable[str]]]:
-    """Returns the events as rows, the number of events left out, and the result separately; and the names of the agents of each run, by
-    its number, in the order of their first events, which is the model's."""
+    """Returns the events as rows, the number of events left out, the time of the last event and the result separately; and the names of
+    the agents of each run, by its number, in the order of their first events, which is the model's."""
     rows: list[tuple[float, str, str, str]] = []
     agents: defaultdict[int, dict[str, None]] = defaultdict(dict)
     result: dict[str, Any] | None = None
+    end = 0.0
     for event in timed_events(recorded):
         if len(rows) < MAX_EVENTS:
             changes.take(event)
             rows.append((event.time, event.source, event.kind, _text(event, changes)))
         agents[event.run][_agent(event)] = None
+        end = event.time
         if event.kind == "result":
             result = dict(event.data)
     kinds = {kind: _kind(kind) for _, _, kind, _ in rows}
     more = recorded.event_count - len(rows)
-    return {"rows": rows, "kinds": kinds, "more": more, "result": None if result is None else _plain(result)}, agents
+    return {"rows": rows, "kinds": kinds, "more": more, "end": end, "result": None if result is None else _plain(result)}, agents
 
 
 def _kind(name: str) -> tuple[str, bool]:
@@ -144,7 +146,7 @@ def _text(event: TraceEvent, changes: ChangeTexts) -> str:
         text = changes.text(event)
     else:
         text = "  ".join(f"{name}={value_text(value)}" for name, value in data.items())
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+    return shortened(text, LONGEST)
 
 
 def _agent(event: TraceEvent) -> str:

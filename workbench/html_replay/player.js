@@ -31,15 +31,14 @@ try {
 if (!drawing) {
   get("canvas").hidden = true;
   get("empty").hidden = false;
-  get("empty").textContent ||= "This run has no world to show.";
+  get("empty").textContent ||= "No scene is stored.";
 }
 
 let now = 0, playing = false, before = 0;
-const rows = data.events.rows;
-const end = Math.max(drawing ? drawing.end : 0, rows.length ? rows[rows.length - 1][0] : 0);
+const end = Math.max(drawing ? drawing.end : 0, data.events.end);
 const events = new Events(data.events, (time) => goTo(time), end);
 get("time").max = end;
-const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${timeText(end)}: ${data.failed ? "the run failed" : "the run was not over"} at that time.`;
+const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${timeText(end)}: ${data.failed ? `the run failed at that time (${data.failed})` : "the run was not over at that time"}.`;
 get("outcome").textContent = (came ? `Outcome: ${came}. ` : "") + over;
 
 function goTo(time) {

@@ -15,7 +15,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, reason_of
 from actr3d.recording import Recorded
 from actr3d.runner.before_exit import end_at_once
 from workbench.app import make_app
@@ -100,7 +100,7 @@ class Requests:
             session = await self._shown(request, wires)
             answer = {"session": session.name, "port": self._gate.port, "ticket": self._gate.issue_ticket()}
         except (Actr3dError, OSError) as error:
-            answer = {"error": str(error)}
+            answer = {"error": reason_of(error)}
         with answering, suppress(ConnectionError):  # the user has interrupted the cell
             answering.sendall(json.dumps(answer).encode())
 

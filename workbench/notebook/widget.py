@@ -18,7 +18,7 @@ from weakref import WeakValueDictionary, ref
 import anywidget
 import traitlets
 
-from actr3d.errors import NotebookError
+from actr3d.errors import NotebookError, reason_of
 from actr3d.recording import Recorded, Recording
 from actr3d.simulation import Simulation
 from workbench.html_replay.make import write_replay
@@ -112,7 +112,7 @@ class Widget(anywidget.AnyWidget):
         try:
             content = {"replay": replay_of(self._shown())}
         except Exception as error:  # noqa: BLE001 - shown in the widget
-            content = {"error": str(error)}
+            content = {"error": reason_of(error)}
         self.send(content)  # pyright: ignore[reportUnknownMemberType]
 
 

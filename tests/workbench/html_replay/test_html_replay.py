@@ -253,6 +253,17 @@ def test_nothing_is_loaded_and_nothing_a_model_says_is_run(desk: Desk, tmp_path:
     assert not re.search(r"src=|href=|url\(|@import|https?:|import\(|fetch\(", page.replace(data[0], ""))
 
 
+def test_texts_that_are_not_unicode_are_shown_as_escapes(tmp_path: Path) -> None:
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("\udcff.py", "", 1, None)) as recorded:
+        trace.listen(recorded.event_alone)
+        trace.emit(0, "model", "output", {"text": "\udc80"})
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    page = (tmp_path / "replay.html").read_text(encoding="utf-8")
+    assert "<title>\\udcff.py · seed 1</title>" in page
+    assert [row[3] for row in inside(page)["events"]["rows"]] == ["\udc80"]
+
+
 def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(make, "MAX_FRAMES", 10)
     monkeypatch.setattr(make, "MAX_EVENTS", 5)

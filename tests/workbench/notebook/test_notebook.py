@@ -11,6 +11,7 @@ import pickle
 import re
 import socket
 import sys
+import tempfile
 import weakref
 from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
@@ -367,6 +368,14 @@ def test_the_server_of_a_notebook_shows_simulations_and_recordings_and_ends_with
     server.end()
     assert server._process.wait(20) == 0
     monkeypatch.delitem(sys.modules, "doorway")
+
+
+def test_a_replay_that_cannot_be_written_says_why_in_plain_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown, sent = widget.Widget(tmp_path / "run.sqlite", height=300), list[Any]()
+    monkeypatch.setattr(shown, "send", sent.append)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    shown._send_replay()
+    assert sent == [{"error": "No such file or directory"}]
 
 
 def test_an_answer_that_comes_late_is_not_that_to_the_next_request(monkeypatch: pytest.MonkeyPatch) -> None:
