@@ -53,8 +53,7 @@ def take_sample(
 
     - table (n, COLUMNS), row: the samples, and the number of the one that is written;
     - end, ago: the time of the joints, and by how much they are ahead of the positions [s];
-    - start (2,), slide: where the body starts [m], and the index of the speed of its base in qvel; a body that stands elsewhere before it
-      has set out was put there, and starts there;
+    - start (2,), slide: where the body starts [m], changed if it was put elsewhere and stands; the index of its base's speed in qvel;
     - reach: the distance of the axis from the wall within which the body is near [m];
     - axis, left, right (3,): the positions of the body's axis and of its shoulders [m];
     - qpos, qvel: the positions and speeds of all joints;
