@@ -123,8 +123,10 @@ def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[st
         result = simulation.result()
         if result is None:
             return end, {}
-        experiment.describe(parameters_of(cast("type[Any]", type(result))))
-        return end, asdict(result)
+        measures = asdict(result)
+        if not measures.keys() <= experiment.about.keys():
+            experiment.describe(parameters_of(cast("type[Any]", type(result))))
+        return end, measures
 
 
 def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:

@@ -394,16 +394,17 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
 
 def _to_json(items: Sequence[Any], otherwise: Callable[[Any], str]) -> str:
     """Returns plain items as one JSON list; `otherwise` converts those that JSON cannot represent."""
-    return f"[{','.join([_item_to_json(item, otherwise) for item in items])}]"
+    # The encoder also writes null for the numbers that JSON does not have.
+    pairs = zip(items, _lines_of(items), strict=True)
+    return f"[{','.join([otherwise(item) if line is None or 'null' in line else line for item, line in pairs])}]"
 
 
-def _item_to_json(item: Any, otherwise: Callable[[Any], str]) -> str:
-    """Returns one item as JSON."""
-    with suppress(TypeError, ValueError, RecursionError):
-        line = _ENCODE(item)
-        if b"null" not in line:  # it also writes null for the numbers that JSON does not have
-            return line.decode()
-    return otherwise(item)
+def _lines_of(items: Sequence[Any]) -> Sequence[str | None]:
+    """Returns each item as JSON; None for those that the encoder cannot represent."""
+    try:
+        return _ENCODE_LINES(items).decode().split("\n")[:-1]
+    except (TypeError, ValueError, RecursionError):
+        return [None] if len(items) == 1 else [line for item in items for line in _lines_of([item])]
 
 
 def _encoded_text(value: Any) -> str:
@@ -411,7 +412,7 @@ def _encoded_text(value: Any) -> str:
     return str.__str__(value)  # raises a TypeError for any other object
 
 
-_ENCODE = msgspec.json.Encoder(enc_hook=_encoded_text).encode
+_ENCODE_LINES = msgspec.json.Encoder(enc_hook=_encoded_text).encode_lines
 """Ten times faster than Python's own encoder, but writes some numbers in another way: only for what is read back, not compared as text."""
 
 

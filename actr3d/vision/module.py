@@ -133,6 +133,7 @@ class Vision(WithParameters, Searching):
         self._waiting: Search | None = None
         self._delivered: tuple[Any, int] = (None, 0)
         self._aim: tuple[int, float, float] = (0, 0.0, 0.0)
+        self._asked: tuple[str, Query | None] = ("", None)
         self._last: dict[bool, Search] = {}
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -182,7 +183,7 @@ class Vision(WithParameters, Searching):
         if not isinstance(bottom_up, bool):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
             raise VisionError(f"vision '{self._path}': bottom_up: must be True or False (got {bottom_up!r})")
         self._learn_detectors()
-        query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
+        query = self._read(pattern, slots)
         waits = {"waits": self._top_down is not None} if bottom_up else {}
         self._trace_request("request", pattern=pattern, asked=query.asked, bottom_up=bottom_up, **waits)
         if bottom_up:
@@ -199,6 +200,15 @@ class Vision(WithParameters, Searching):
         if not self.busy:
             self.busy = True
         return search
+
+    def _read(self, pattern: str, slots: dict[str, Any]) -> Query:
+        """Reads a request, unless it is the same as the last one: eyes that scan ask for the same thing again and again."""
+        text = repr((pattern, slots))
+        last, query = self._asked
+        if query is None or text != last or "?" in text:  # the value of a variable may have changed
+            query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
+            self._asked = text, query
+        return query
 
     def gaze(self, left: float, up: float = 0.0) -> None:
         """Turns the eye to a direction relative to the head, or to its limits, in the time of a human saccade.

@@ -146,7 +146,6 @@ class World:
         else:
             self._step(count, self.watchers)
         self.physics.steps += count
-        self.changed()
         if self.physics.diverged:
             culprit = self.physics.diverged_object()
             raise WorldError(f"the physics diverged near {seconds(self.time)} s, at '{culprit}': forces or speeds without bounds")

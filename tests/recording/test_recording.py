@@ -118,7 +118,7 @@ def test_any_loss_of_items_stops_the_recording(error: BaseException, tmp_path: P
 
     recording = Recording(tmp_path / "run", {"kind": "simulation"})
     with monkeypatch.context() as patch:
-        patch.setattr(writer, "_item_to_json", raising)
+        patch.setattr(writer, "_lines_of", raising)
         recording.event(TraceEvent(5, "top", "state", {"number": 1}))
         with pytest.raises(type(error)) if isinstance(error, KeyboardInterrupt) else nullcontext():
             recording._writer.flush()

@@ -110,6 +110,19 @@ def test_what_holds_is_returned(asked: str) -> None:
     assert AgentWithoutPhysics(room(), kind).tick(20).agent.visual.chunk["feature"] == "opening"
 
 
+def test_a_repeated_request_has_the_present_value_of_its_variable() -> None:
+    kind = mind("""
+    def init():
+        goal.set("look width:0.7 then:0.5")
+    def look(goal="look width:?w then:?then", vision="busy:False"):
+        vision.request("feature:opening", width=">?w")
+        goal.set(f"look width:{then} then:nothing" if then != "nothing" else "wait")
+""")
+    seer = AgentWithoutPhysics(room(), kind)
+    assert seer.tick(11).agent.vision.error
+    assert seer.tick(30).agent.visual.chunk["width"] == 0.6
+
+
 def test_a_doorway_whose_top_is_out_of_sight_may_be_high_enough() -> None:
     world = room()
     world.bodies["walker"].set("teleport", 6.2, 0)

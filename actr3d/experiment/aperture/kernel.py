@@ -12,6 +12,16 @@ from actr3d.world.kernel import BOX, SPHERE, Array, extent
 END, DURATION, BEFORE, ANGLE, LOGGED, TURNED, ENTERED, LEFT, RIGHT = range(9)
 """The columns of a table of samples, see `Passage`."""
 COLUMNS = RIGHT + 1
+NOT_YET, AGAIN, FAR, NEAR = range(4)
+"""What `take_sample` returns: the body has not set out yet; the table has a sample of this time or later, because the run has gone back; or
+where the body is, of which it has written a sample."""
+
+SET_OUT = 0.05
+"""Distance from the start after which a body has set out [m]. Source: chosen for this library."""
+STANDS = 0.01
+"""Speed below which a body stands [m/s]. Source: chosen for this library; less than any walk."""
+TINY = 1e-9
+"""Less than any physics step [s]."""
 
 
 @compiled_on_demand(Path(__file__))
@@ -20,6 +30,9 @@ def take_sample(
     row: int,
     end: float,
     ago: float,
+    start: Array,
+    slide: int,
+    reach: float,
     axis: Array,
     left: Array,
     right: Array,
@@ -33,21 +46,30 @@ def take_sample(
     wall_y: float,
     ahead_x: float,
     ahead_y: float,
-) -> float:
-    """Measures a body before a wall and writes a row of samples, with NaN as LEFT and RIGHT.
+) -> int:
+    """Measures a body before a wall, once it has set out, and writes a row of samples, with NaN as LEFT and RIGHT.
 
     Its arguments:
 
     - table (n, COLUMNS), row: the samples, and the number of the one that is written;
     - end, ago: the time of the joints, and by how much they are ahead of the positions [s];
+    - start (2,), slide: where the body starts [m], changed if it was put elsewhere and stands; the index of its base's speed in qvel;
+    - reach: the distance of the axis from the wall within which the body is near [m];
     - axis, left, right (3,): the positions of the body's axis and of its shoulders [m];
     - qpos, qvel: the positions and speeds of all joints;
     - joints (k, 2), shares (k,): the indices in these of the joints that turn the shoulders, and by how much each of them turns them;
     - gait (m,), gait_shares (m,): what gait adds to joints, and by how much each of these turns the shoulders;
     - wall_x, wall_y, ahead_x, ahead_y: the middle of the wall [m], and the direction through it.
 
-    It returns the distance of the axis before the wall [m].
+    It returns one of `NOT_YET`, `AGAIN`, `FAR` and `NEAR`.
     """
+    if row and end <= table[row - 1, END] + TINY:
+        return AGAIN
+    if math.hypot(axis[0] - start[0], axis[1] - start[1]) < SET_OUT:
+        return NOT_YET
+    if not row and math.hypot(qvel[slide], qvel[slide + 1]) < STANDS:
+        start[0], start[1] = axis[0], axis[1]
+        return NOT_YET
     before = (wall_x - axis[0]) * ahead_x + (wall_y - axis[1]) * ahead_y
     dx, dy = left[0] - right[0], left[1] - right[1]
     angle = 0.0
@@ -62,7 +84,7 @@ def take_sample(
     table[row, LOGGED], table[row, TURNED] = angle, turned
     table[row, ENTERED] = table[row - 1, ENTERED] if row else 0.0
     table[row, LEFT] = table[row, RIGHT] = math.nan
-    return before
+    return NEAR if abs(before) < reach else FAR
 
 
 @compiled_on_demand(Path(__file__), Path(actr3d.world.kernel.__file__))

@@ -13,15 +13,19 @@ from numpy.typing import NDArray
 from actr3d.errors import WorldError
 from actr3d.experiment.aperture.clearance import Clearance
 from actr3d.experiment.aperture.kernel import (
+    AGAIN,
     ANGLE,
     BEFORE,
     COLUMNS,
     DURATION,
     END,
     ENTERED,
+    FAR,
     LEFT,
     LOGGED,
+    NEAR,
     RIGHT,
+    TINY,
     TURNED,
     take_sample,
 )
@@ -29,16 +33,10 @@ from actr3d.simulation.measure import measure
 from actr3d.world import World
 from actr3d.world.scene_objects import Aperture
 
-SET_OUT = 0.05
-"""Distance from the start after which a body has set out [m]. Source: chosen for this library."""
-STANDS = 0.01
-"""Speed below which a body stands [m/s]. Source: chosen for this library; less than any walk."""
 FASTEST = 20.0
 """No part of a body moves faster than this [m/s]. Source: chosen; a swinging arm reaches a few metres a second."""
 ROWS = 4096
 """Samples for which there is room at first: those of a walk of 8 s, in steps of 2 ms."""
-TINY = 1e-9
-"""Less than any physics step [s]."""
 LEAST_TURN = math.radians(1)
 """Turn of the shoulders at which a turn begins [rad]. Source: chosen for this library."""
 
@@ -140,7 +138,7 @@ class Passage:
         self._world, self._body = world, world.bodies[body]
         data = world.mj_data
         self._data, self._options, self._contacts = data, world.mj_model.opt, self._body.contacts
-        self._axis, self._qvel = data.xpos[self._body.root], data.qvel
+        axis = data.xpos[self._body.root]
         wall = next((part for part in world.scene.parts if isinstance(part, Aperture) and part.name == aperture), None)
         if wall is None:
             raise WorldError(f"no aperture '{aperture}' in this scene to measure a passage through")
@@ -157,29 +155,32 @@ class Passage:
         rows = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
         stepping, added = self._body.hold.added_by_gait
         gait = added, np.array([hinges.get(name, 0.0) for name in stepping])
-        self._read: tuple[Any, ...] = self._axis, *shoulders, data.qpos, data.qvel, *rows, *gait, *middle
+        start = axis[:2].copy(), self._body.base.v, 2.0 + wall.thickness
+        self._read: tuple[Any, ...] = *start, axis, *shoulders, data.qpos, data.qvel, *rows, *gait, *middle
         """What `take_sample` reads."""
         self._mass = float(model.body_subtreemass[self._body.root])
-        x, y, _ = self._axis.tolist()
-        self._start = x, y
-        self._slide = self._body.base.v
-        self._reach = 2.0 + wall.thickness
         self._away = math.inf, math.inf
 
     def look(self) -> None:
         """Adds a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
         end, ago, number = self._data.time, self._options.timestep, self._count
-        x, y, _ = self._axis.tolist()
-        if number and end <= self._table.item(number - 1, END) + TINY:  # the run has gone back
+        if number == len(self._table):
+            self._table = np.resize(self._table, (2 * number + ROWS, COLUMNS))
+        seen = take_sample()(self._table, number, end, ago, *self._read)
+        if seen == AGAIN:
             number = self._number_until(end - ago)
             self._remove(number, self._number_until(end))
-        if math.dist((x, y), self._start) < SET_OUT:
+            table = np.insert(self._table, number, 0.0, axis=0)
+            seen = take_sample()(table, number, end, ago, *self._read)
+            if seen >= FAR:
+                self._table = table
+        if seen < FAR:
             return
-        if not number and math.hypot(self._qvel[self._slide], self._qvel[self._slide + 1]) < STANDS:
-            self._start = x, y  # it was put elsewhere before it set out
-        else:
-            self._insert(number)
-            self._sample(number, end, ago)
+        self._count += 1
+        if seen == NEAR:
+            self._measure_room(number, end - ago)
+        if self._data.ncon and (touches := self._contacts.touches()):
+            self._forces[end] = {(touch.part, touch.other): touch.force for touch in touches}
 
     def _remove(self, first: int, last: int) -> None:
         """Removes the samples from number `first` to before `last`."""
@@ -188,47 +189,25 @@ class Passage:
         self._table = np.delete(self._table, slice(first, last), axis=0)
         self._count -= last - first
 
-    def _insert(self, number: int) -> None:
-        """Makes room for a sample before that of a number."""
-        if number < self._count:
-            self._table = np.insert(self._table, number, 0.0, axis=0)
-        elif number >= len(self._table):
-            self._table = np.resize(self._table, (2 * number + ROWS, COLUMNS))
-        self._count += 1
-
     def _number_until(self, time: float) -> int:
         """Returns the number of samples up to a time [s]."""
         return int(np.searchsorted(self._table[: self._count, END], time + TINY, side="right"))
 
-    def _sample(self, number: int, end: float, ago: float) -> None:
-        """Measures a sample.
-
-        Args:
-            number: Its number.
-            end: The time of the joints [s].
-            ago: By how much they are ahead of the geometry [s].
-        """
-        table, time = self._table, end - ago
-        before = take_sample()(table, number, end, ago, *self._read)
+    def _measure_room(self, number: int, time: float) -> None:
+        """Adds to a sample of a time [s] the room on both sides, if a part of the body is between the faces of the wall; else notes until
+        when none can be there."""
         left, back = self._away
-        if abs(before) < self._reach and not left <= time < back:
-            room = self._room(time)
-            if room is not None:
-                table[number, LEFT:] = room
-                if not table[number, ENTERED]:
-                    table[number, ENTERED] = self._clearance.is_inside(room, self._contacts.held())
-        if self._data.ncon and (touches := self._contacts.touches()):
-            self._forces[end] = {(touch.part, touch.other): touch.force for touch in touches}
-
-    def _room(self, time: float) -> tuple[float, float] | None:
-        """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces: then it notes until when
-        none can be there."""
+        if left <= time < back:
+            return
         held = self._contacts.held()
         distance = self._clearance.distance_to_wall(held)
-        if distance <= 0:
-            return self._clearance.to_segments(held)
-        self._away = time, time + distance / FASTEST
-        return None
+        if distance > 0:
+            self._away = time, time + distance / FASTEST
+            return
+        sample = self._table[number]
+        sample[LEFT:] = room = self._clearance.to_segments(held)
+        if not sample[ENTERED]:
+            sample[ENTERED] = self._clearance.is_inside(room, held)
 
     def result(self, *, over: bool) -> PassageResult:
         """Returns the result up to now."""
