@@ -146,7 +146,10 @@ def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
     path = write_experiment(tmp_path, participants=1, trials=8)
     expected = run_here(client, path, tmp_path / "usual")
     monkeypatch.setattr(cluster, "LONGEST_BATCH", 0.0)
-    batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions())
+    try:
+        batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions(), str(path))
+    finally:
+        end_processes(str(path))
     assert [number for number, _, _ in batch.rows] == [3]
     seen: list[ExperimentProgress] = []
     assert run_here(client, path, tmp_path / "short", show=seen.append) == expected

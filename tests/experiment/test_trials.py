@@ -26,7 +26,7 @@ import pytest
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment import trial_measures
-from actr3d.experiment.cluster import cluster_versions, run_batch
+from actr3d.experiment.cluster import cluster_versions, end_processes, run_batch
 from actr3d.experiment.specification import Experiment, Specification, specify
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
@@ -947,7 +947,10 @@ def test_a_row_has_the_values_that_ran(tmp_path: Path) -> None:
     derive = "limit=60, derive=lambda v: {'n': os.getpid()}, results=lambda program: {'rt': program.n, 'luck': 0}"
     path.write_text("import os\n" + path.read_text(encoding="utf-8").replace("limit=60", derive), encoding="utf-8")
     (tmp_path / "counter.py").write_text(COUNTER.replace("model.run()", "model.run(0)"), encoding="utf-8")
-    batch = run_batch(specify(str(path)).specification.to_json(), [0, 1], 60, cluster_versions())
+    try:
+        batch = run_batch(specify(str(path)).specification.to_json(), [0, 1], 60, cluster_versions(), str(path))
+    finally:
+        end_processes(str(path))
     assert len(batch.rows) == 2
     for _, row, _ in batch.rows:
         assert row["rt"] == row["n"] != os.getpid()
