@@ -11,6 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO, cast
 
+from actr3d.errors import reason_of
+
 
 class _Lines(io.BufferedIOBase):
     """Receives UTF-8 bytes, and passes on whole lines of text; closing it has no effect."""
@@ -279,5 +281,5 @@ def all_written(out: TextIO, printed: ModelOutput | None) -> OSError | None:
 def report_unwritten(error: OSError) -> int:
     """Prints why the output cannot be written, unless its reader has only closed it; returns the exit code."""
     if not isinstance(error, BrokenPipeError):
-        print(f"error: cannot write the output: {error.strerror or error}", file=sys.stderr)
+        print(f"error: cannot write the output: {reason_of(error)}", file=sys.stderr)
     return 1

@@ -33,7 +33,7 @@ class GeometricCamera:
     (sizes, colours, heights, poses) take effect at the next look; only the list of geoms and their types is read once. The sensor `view`
     looks again after a step, or after `World.changed`.
 
-    A camera is not thread-safe. A copy has the same labels; one that is deep, or was pickled, has its own copy of the model, too.
+    A camera is not thread-safe. A copy has the same labels; a deep or pickled one also has its own copy of the model.
     """
 
     def __init__(

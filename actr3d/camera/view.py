@@ -22,8 +22,6 @@ EDGES = ("x1", "x2", "d1", "d2", "a1", "a2")
 NOISY = (*EDGES, "xn", "dn")
 """The fields that noise can be added to."""
 
-StandardDeviation = Annotated[float, Ge(0)]
-
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -97,6 +95,6 @@ class View:
         for field, of in cast("Mapping[str, float]", sd).items():
             if field not in NOISY:
                 raise CameraError(f"noise of view: no field '{field}'{alternatives(field, NOISY)}")
-            extents[field] += checked(of, StandardDeviation, f"noise of view: {field}") * random.standard_normal(len(extents))
+            extents[field] += checked(of, Annotated[float, Ge(0)], f"noise of view: {field}") * random.standard_normal(len(extents))
         extents.flags.writeable = False
         return replace(self, extents=extents)

@@ -66,7 +66,7 @@ def _made_again(kind: type[World], scene: Scene, seed: int, state: WorldState) -
 class World:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and steps them.
 
-    A copy, deep or pickled too, is a world in the same state, without the watchers.
+    A copy (shallow, deep or pickled) is a world of its own in the same state, without the watchers.
 
     This is the physical world. The `World` of Python ACT-R, a map of cells, is `ccm.lib.grid.World` in model files.
 

@@ -59,15 +59,16 @@ def note(stretches: Record, owner: int, piece: Record, low: float, high: float, 
     """Stores that a piece is seen in an extent between two tangents."""
     if stretches.count > AT_ONCE - AT_MOST:
         find_nearest(stretches, extents)
+    least = max(low, -high, 0.0)
     if piece.side == LINE:
         start = piece.c0 - piece.c1 * piece.b0
         end = high if piece.c1 > 0.0 else low
-        _note_point(stretches, owner, piece, min(high, max(low, piece.c1 * level / start)) if start > 0.0 else end, level)
+        _note_point(stretches, owner, piece, least, min(high, max(low, piece.c1 * level / start)) if start > 0.0 else end, level)
         return
     if piece.side == FAR_SIDE:  # from inside, the nearest point may be an end, and the middle the farthest
-        _note_point(stretches, owner, piece, low, level)
-        _note_point(stretches, owner, piece, high, level)
-    number = _note_stretch(stretches, owner, piece, max(low, -high, 0.0), level)
+        _note_point(stretches, owner, piece, least, low, level)
+        _note_point(stretches, owner, piece, least, high, level)
+    number = _note_stretch(stretches, owner, piece, least, level)
     i = stretches.open
     stretches.open = i + 1
     # A ball or an upright pole is nearest at its middle; other round pieces are nearest on one side of it.
@@ -79,9 +80,9 @@ def note(stretches: Record, owner: int, piece: Record, low: float, high: float, 
 
 
 @inner_compiled
-def _note_point(stretches: Record, owner: int, piece: Record, u: float, level: float) -> None:
-    """Stores a stretch that is one point."""
-    number = _note_stretch(stretches, owner, piece, abs(u), level)
+def _note_point(stretches: Record, owner: int, piece: Record, least: float, u: float, level: float) -> None:
+    """Stores a stretch whose nearest point is known."""
+    number = _note_stretch(stretches, owner, piece, least, level)
     stretches.u[number], stretches.w[number] = u, nearness(piece, u)
 
 

@@ -14,7 +14,7 @@ END, DURATION, BEFORE, ANGLE, LOGGED, TURNED, ENTERED, LEFT, RIGHT = range(9)
 COLUMNS = RIGHT + 1
 NOT_YET, AGAIN, FAR, NEAR = range(4)
 """What `take_sample` returns: the body has not set out yet; the table has a sample of this time or later, because the run has gone back; or
-where the body is, of which it has written a sample."""
+it has written a sample of a body that is far from the wall, or near it."""
 
 SET_OUT = 0.05
 """Distance from the start after which a body has set out [m]. Source: chosen for this library."""
