@@ -17,6 +17,7 @@ from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_reques
 from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
+from actr3d.values import BASIC
 from actr3d.vision.detectors import DETECTORS
 from actr3d.vision.encoding import PROGRAMMING, Emma
 from actr3d.vision.feature import off_sight, slot_names
@@ -205,7 +206,8 @@ class Vision(WithParameters, Searching):
         """Reads a request, unless it is the same as the last one: eyes that scan ask for the same thing again and again."""
         text = repr((pattern, slots))
         last, query = self._asked
-        if query is None or text != last or "?" in text:  # the value of a variable may have changed
+        # The value of a variable may have changed, and other objects may differ and have the same text.
+        if query is None or text != last or "?" in text or not BASIC.issuperset(map(type, (pattern, *slots.values()))):
             query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
             self._asked = text, query
         return query
@@ -401,6 +403,7 @@ class Vision(WithParameters, Searching):
         if newer:
             self._detectors = {**self._detectors, **newer}
             self._saliences = saliences_of(self.salience, self._detectors)
+            self._asked = "", None
 
     def _kinds(self) -> dict[str, tuple[str, ...]]:
         self._learn_detectors()

@@ -468,13 +468,18 @@ class Body:
 def _without_arrays(reading: Any) -> Any:
     """Returns a reading with tuples and numbers of Python instead of those of numpy: an array of MuJoCo changes with the next step."""
     kind = cast("type[Any]", type(reading))
-    if kind is dict:
-        return {key: item if type(item) in BASIC else _without_arrays(item) for key, item in reading.items()}
-    if kind is tuple or kind is list:
-        return cast("Any", kind)([item if type(item) in BASIC else _without_arrays(item) for item in reading])
     if issubclass(kind, (np.ndarray, np.generic)):
-        return tuple(map(_without_arrays, reading)) if reading.ndim else reading.item()
+        return _tuples(reading.tolist())
+    if kind is dict and not BASIC.issuperset(map(type, reading.values())):
+        return {key: _without_arrays(item) for key, item in reading.items()}
+    if kind in (tuple, list) and not BASIC.issuperset(map(type, reading)):
+        return cast("Any", kind)(map(_without_arrays, reading))
     return reading
+
+
+def _tuples(items: Any) -> Any:
+    """Returns nested lists as tuples."""
+    return tuple(map(_tuples, cast("list[Any]", items))) if isinstance(items, list) else items
 
 
 def _named(kind: str, names: list[str]) -> list[str]:

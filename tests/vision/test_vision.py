@@ -123,6 +123,20 @@ def test_a_repeated_request_has_the_present_value_of_its_variable() -> None:
     assert seer.tick(30).agent.visual.chunk["width"] == 0.6
 
 
+def test_a_request_is_not_taken_for_another_one_with_the_same_text() -> None:
+    kind = mind("""
+    def init():
+        goal.set("look 0.7")
+    def look(goal="look ?w", vision="busy:False"):
+        width = type("Width", (float,), {"__repr__": lambda self: "a width"})(w)
+        vision.request("feature:opening", width=width)
+        goal.set("look 0.5" if width == 0.7 else "wait")
+""")
+    seer = AgentWithoutPhysics(room(), kind)
+    assert seer.tick(11).agent.vision.error
+    assert seer.tick(30).agent.visual.chunk["width"] == 0.6
+
+
 def test_a_doorway_whose_top_is_out_of_sight_may_be_high_enough() -> None:
     world = room()
     world.bodies["walker"].set("teleport", 6.2, 0)

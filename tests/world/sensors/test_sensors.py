@@ -315,12 +315,18 @@ def test_an_array_that_a_sensor_returns_becomes_a_tuple_that_stays(monkeypatch: 
     def own(body: Any) -> Any:
         body.physics.refresh()
         place = body.physics.mj_data.xpos[body.root]
-        return {"place": place, "rows": [np.array([place[:2]])], "x": np.float32(place[0]), "none": np.array(3)}
+        return {
+            "place": place,
+            "rows": [np.array([place[:2]])],
+            "x": np.float32(place[0]),
+            "none": np.array(3),
+            "far": np.ma.masked_less(place, 9),
+        }
 
     world, body = walker_in()
     monkeypatch.setitem(SENSORS, "own", BodyFunction("own", own, lambda _: True))
     reading = body.get("own")
-    assert reading == {"place": (0.0, 0.0, 0.0), "rows": [((0.0, 0.0),)], "x": 0.0, "none": 3}
+    assert reading == {"place": (0.0, 0.0, 0.0), "rows": [((0.0, 0.0),)], "x": 0.0, "none": 3, "far": (None, None, None)}
     body.set("walk", 2.0)
     ticks(world, 10)
     assert reading["place"] == (0.0, 0.0, 0.0)
