@@ -58,7 +58,7 @@ PARTS: dict[str, set[str]] = {
     | RUNNING
     | {"parameter_schema", "output", "runner", "benchmark"},
     "bench": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "benchmark"},
-    "output": set(),
+    "output": {"errors"},
     "cli": BASE | BODILY | SENSES | RUNNING | {"parameter_schema", "runner", "experiment", "bench", "benchmark", "output"},
     "__main__": {"cli"},
 }
