@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any, Literal
 
 import mujoco
@@ -148,7 +149,12 @@ class GeometricCamera:
         self._labels[:] = state
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _made_again, (self._mj_model, {self._eye.kind: self._eye.name}, self.parameters, self.state())
+        # Its arrays are views of the model's memory, so they cannot be copied.
+        eye = {self._eye.kind: self._eye.name}
+        return partial(GeometricCamera, parameters=self.parameters, **eye), (self._mj_model,), self.state()
+
+    def __setstate__(self, state: tuple[int, ...]) -> None:
+        self.restore(state)
 
     def compile_half(self, mj_data: MjData, half: Literal["scene", "rows"]) -> None:
         """Compiles half of what `look` needs, or loads it, so that two processes can share the work: the first look loads both halves.
@@ -180,13 +186,6 @@ class GeometricCamera:
             name = names_of(self._mj_model, "geom")[-1 - count] or str(-1 - count)
             raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is not a number; did the physics diverge?")
         return count
-
-
-def _made_again(mj_model: MjModel, eye: dict[str, str], parameters: CameraParameters, state: tuple[int, ...]) -> GeometricCamera:
-    """Returns a copy of a camera: its arrays are views of the model's memory, so they cannot be copied."""
-    camera = GeometricCamera(mj_model, parameters=parameters, **eye)
-    camera.restore(state)
-    return camera
 
 
 def _warn_of_unseen(mj_model: MjModel) -> None:

@@ -397,6 +397,8 @@ class Vision(WithParameters, Searching):
 
         Before its first request, those of the file also replace what other files, or earlier texts of this one, have defined.
         """
+        if self._has_learnt and DETECTORS.keys() <= self._detectors.keys():
+            return
         own = set[str]() if self._has_learnt else {type(part).__module__ for part in lineage(self)}
         self._has_learnt = True
         newer = {name: one for name, one in DETECTORS.items() if name not in self._detectors or one.detect.__module__ in own}

@@ -56,13 +56,6 @@ class Bodies(dict[str, Body]):
         raise WorldError(f"no body '{name}'{alternatives(name, self)}")
 
 
-def _made_again(kind: type[World], scene: Scene, seed: int, state: WorldState) -> World:
-    """Returns a copy of a world."""
-    world = kind(scene, seed)
-    world.restore(state)
-    return world
-
-
 class World:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and steps them.
 
@@ -240,7 +233,10 @@ class World:
         self.changed()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _made_again, (type(self), self.scene, self.seed, self.state())  # the arrays of MuJoCo cannot be copied one by one
+        return type(self), (self.scene, self.seed), self.state()  # the arrays of MuJoCo cannot be copied one by one
+
+    def __setstate__(self, state: WorldState) -> None:
+        self.restore(state)
 
     # -- objects moved by hand
 
