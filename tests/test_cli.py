@@ -15,7 +15,7 @@ import pytest
 import actr3d
 from actr3d.cli import main
 from actr3d.recording import Recorded
-from tests.helpers.commands import run_command
+from tests.helpers.commands import run_command, run_without_reader
 from tests.helpers.paths import MODELS
 
 COMMAND = [sys.executable, "-c", "import sys; from actr3d.cli import main; sys.exit(main(sys.argv[1:]))"]
@@ -216,13 +216,9 @@ def test_a_closed_pipe_is_no_error(tmp_path: Path) -> None:
 @pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
 def test_a_run_is_recorded_whole_though_nobody_reads_its_output(tmp_path: Path, words: list[str]) -> None:
     (tmp_path / "model.py").write_text((MODELS / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
-    reading, writing = os.pipe()
-    os.close(reading)
     command = [*COMMAND, "run", "model.py", "--record", "run", *words]
-    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-    done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=writing, stderr=subprocess.PIPE, timeout=60, check=False)
-    os.close(writing)
-    assert (done.returncode, done.stderr) == (1, b"")
+    done = run_without_reader(command, tmp_path, timeout=60)
+    assert (done.returncode, done.stderr) == (1, "")
     with Recorded(tmp_path / "run") as recorded:
         assert recorded.finished
         assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["2", "3", "4", "5"]
@@ -366,10 +362,7 @@ def test_the_output_of_every_command_is_written_or_the_exit_code_says_that_it_is
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (done.returncode, done.stderr) == (code, "error: cannot write the output: No space left on device\n")
-    reading, writing = os.pipe()
-    os.close(reading)
-    done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
-    os.close(writing)
+    done = run_without_reader(command, tmp_path, unbuffered=unbuffered)
     assert (done.returncode, done.stderr) == (code, "")
 
 

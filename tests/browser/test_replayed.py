@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 import re
 import time
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.recording import Recording
@@ -47,6 +48,16 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return file
 
 
+@contextmanager
+def opened(browser: Browser, file: Path, **options: Any) -> Generator[Page]:
+    """Opens a replay from disk, in a context with some options of Playwright."""
+    with browser.new_context(**options) as context:
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(file.as_uri())
+        yield page
+
+
 @pytest.mark.slow
 def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_was_not_over(browser: Browser, tmp_path: Path) -> None:
     trace = Trace("all")
@@ -56,10 +67,7 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
         for parts in ((), (Wall(name="wall", start=(2, -1), end=(2, 1)),)):
             Simulation(Scene(parts=(Floor(), Mannequin(), *parts)), bodiless={"waiting": Waiting}).run(0.5)
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
-    with browser.new_context(viewport={"width": 690, "height": 500}, offline=True) as context:
-        page = context.new_page()
-        page.set_default_timeout(PATIENCE)
-        page.goto((tmp_path / "replay.html").as_uri())
+    with opened(browser, tmp_path / "replay.html", viewport={"width": 690, "height": 500}, offline=True) as page:
         expect(page.locator("#outcome")).to_have_text("Shown up to 1.20 s: the run was not over at that time.")
         expect(page.locator("#empty")).to_have_text("No scene is stored before 0.20 s.")
         expect(page.locator("#canvas")).to_be_hidden()
@@ -87,9 +95,7 @@ def test_the_clock_of_a_long_run_has_hours(browser: Browser, tmp_path: Path) -> 
         for time_us in (0, 4_512_300_000):
             trace.emit(time_us, "top", "begin", {})
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
-    with browser.new_context(offline=True) as context:
-        page = context.new_page()
-        page.goto((tmp_path / "replay.html").as_uri())
+    with opened(browser, tmp_path / "replay.html", offline=True) as page:
         expect(page.locator("#outcome")).to_have_text("Shown up to 1:15:12.30: the run was not over at that time.")
         expect(page.locator("#clock")).to_have_text("0:00:00.00")
         expect(page.locator(".event time")).to_have_text(["0:00:00.000", "1:15:12.300"])
@@ -102,9 +108,7 @@ def test_a_simulation_that_was_left_at_once_has_no_scene(browser: Browser, tmp_p
     with Simulation(Scene(parts=(Floor(), Mannequin())), seed=1).record(tmp_path / "run.sqlite"):
         pass
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
-    with browser.new_context(offline=True) as context:
-        page = context.new_page()
-        page.goto((tmp_path / "replay.html").as_uri())
+    with opened(browser, tmp_path / "replay.html", offline=True) as page:
         expect(page.locator("#outcome")).to_have_text("Shown up to 0.00 s: the run was not over at that time.")
         expect(page.locator("#empty")).to_have_text("No scene is stored.")
 
@@ -115,9 +119,7 @@ def test_a_file_that_was_cut_off_says_why_nothing_plays(browser: Browser, tmp_pa
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
     whole = (tmp_path / "replay.html").read_text(encoding="utf-8")
     (tmp_path / "cut.html").write_text(whole[: whole.index('"events"')], encoding="utf-8")
-    with browser.new_context(offline=True) as context:
-        page = context.new_page()
-        page.goto((tmp_path / "cut.html").as_uri())
+    with opened(browser, tmp_path / "cut.html", offline=True) as page:
         expect(page.locator("#outcome")).to_have_text("Nothing plays: the file is not whole, or no scripts run here.")
 
 
@@ -130,18 +132,13 @@ def test_a_run_whose_last_events_are_left_out_failed_when_it_did(browser: Browse
             trace.emit(time_us, "top", "begin", {})
         recording.fact("failed", "ValueError: no more")
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
-    with browser.new_context(offline=True) as context:
-        page = context.new_page()
-        page.goto((tmp_path / "replay.html").as_uri())
+    with opened(browser, tmp_path / "replay.html", offline=True) as page:
         expect(page.locator("#outcome")).to_have_text("Shown up to 600.00 s: the run failed at that time (ValueError: no more).")
         expect(page.locator("#count")).to_have_text("1 of 1 events; 1 more are left out")
 
 
 def test_all_of_it_can_be_read_named_and_reached_in_both_themes(browser: Browser, replay: Path) -> None:
-    with browser.new_context(viewport={"width": 1200, "height": 800}) as context:
-        page = context.new_page()
-        page.set_default_timeout(PATIENCE)
-        page.goto(replay.as_uri())
+    with opened(browser, replay, viewport={"width": 1200, "height": 800}) as page:
         drawn(page)
         problems = problems_of(page)  # all events are ahead
         page.get_by_text("Parameters and result").click()

@@ -34,6 +34,7 @@ from actr3d.experiment.trial import run_trial
 from actr3d.experiment.trial_measures import variables_set_in
 from actr3d.experiment.trial_process import FOLDER, TIME_LIMIT, TrialProcess
 from actr3d.recording import Recorded
+from tests.helpers.commands import run_without_reader
 from tests.helpers.experiments import COUNTER, trial_processes, write_experiment
 from tests.helpers.folders import not_writable
 
@@ -796,13 +797,9 @@ def test_a_trial_whose_values_cannot_be_derived_is_a_failure(tmp_path: Path) -> 
 def test_a_trial_is_recorded_whole_though_nobody_reads_its_output(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, model=f"{COUNTER}\nprint('printed')\n", participants=1, trials=1)
     Store.create(tmp_path / "out", specify(str(path)).specification).close()
-    reading, writing = os.pipe()
-    os.close(reading)
     command = [sys.executable, "-m", "actr3d", "experiment", "out", "--trial", "0", "--record", "again.rec"]
-    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-    done = subprocess.run(command, cwd=tmp_path, env=environment, stdout=writing, stderr=subprocess.PIPE, timeout=200, check=False)
-    os.close(writing)
-    assert (done.returncode, done.stderr) == (2, b"")
+    done = run_without_reader(command, tmp_path)
+    assert (done.returncode, done.stderr) == (2, "")
     with Recorded(tmp_path / "again.rec") as recorded:
         assert recorded.finished
         assert not recorded.failed

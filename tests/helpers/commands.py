@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import io
 import os
+import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from multiprocessing import get_context
 from pathlib import Path
 from subprocess import CompletedProcess, TimeoutExpired
@@ -45,6 +46,28 @@ def run_command(
             process.join()
             raise TimeoutExpired(words, timeout)
         return CompletedProcess(words, process.exitcode, _text(out), _text(error))
+
+
+def run_without_reader(command: Sequence[str], folder: Path, *, unbuffered: str = "1", timeout: float = 200) -> CompletedProcess[str]:
+    """Runs a command in a process whose output nobody reads, as behind a pipe to a `head` that has ended; returns its exit code and what it
+    writes to standard error.
+
+    Args:
+        command: The program and its arguments.
+        folder: The working directory.
+        unbuffered: The variable `PYTHONUNBUFFERED`: "1" to write everything at once, "" to write it in blocks.
+        timeout: Maximum duration [s].
+
+    Raises:
+        TimeoutExpired: If it takes longer; it is killed.
+    """
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        with patch.dict(os.environ, PYTHONUNBUFFERED=unbuffered):
+            return subprocess.run(command, cwd=folder, stdout=writing, stderr=subprocess.PIPE, text=True, timeout=timeout, check=False)
+    finally:
+        os.close(writing)
 
 
 def _text(path: Path) -> str:
