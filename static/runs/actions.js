@@ -12,7 +12,7 @@ import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
 import { nameOf, sizeText, whenText } from "./wording.js";
 
-/** The results of replays by id: {since, share} while one is running, then {verdict, text}. */
+/** The results of replays by id: {since, share} while one is running, then {verdict, text}, with the number of events that the list had then. */
 export const replays = signal({});
 /** The current slow action; null for none: {text, done?, of?}. */
 export const busy = signal(null);
@@ -91,7 +91,8 @@ export async function replayRun(run) {
   }, LOOK);
   try {
     const verdict = await withTrust(run.id, "Replaying it", (trust) => call("POST", path, { trust }, cancel.signal));
-    note(run.id, verdict ?? { verdict: null, text: "cancelled" });
+    if (verdict) await listRuns();
+    note(run.id, verdict ? { ...verdict, events: runs.value?.find(({ id }) => id === run.id)?.events } : { verdict: null, text: "cancelled" });
   } catch (error) {
     note(run.id, { verdict: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }

@@ -38,6 +38,9 @@ function Replayed({ run }) {
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
+  if (result.verdict && result.events !== run.events) {
+    return html`<div class="replayed" role="status">The recording has changed since it was replayed.</div>`;
+  }
   const [head, kind] = VERDICTS[result.verdict] ?? ["Not known.", "bad"];
   return html`<div class="replayed" role="status"><b class=${kind}>${head}</b> <span>${result.text}</span></div>`;
 }

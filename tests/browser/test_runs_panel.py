@@ -19,7 +19,7 @@ from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.trace_kinds import GROUPS, KINDS
 from actr3d.world import Floor, Mannequin, Scene
-from tests.helpers.page import answers, open_tab, until
+from tests.helpers.page import answers, open_tab, shows, until
 from tests.helpers.recording_forgery import forge
 from tests.helpers.workbench_server import Served
 
@@ -429,6 +429,23 @@ def test_a_recording_from_elsewhere_shows_its_code_and_asks_before_it_is_run(
     dialog.get_by_role("button", name="Run its code").click()
     expect(page).to_have_url(re.compile("run=far"))
     far.unlink()
+
+
+def test_a_recording_that_goes_on_has_no_verdict_of_a_replay_before(pages: Callable[..., Page], recordings: Path) -> None:
+    page = pages("counting.py")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    open_tab(page, "Runs")
+    page.locator("tr.present").first.click()
+    page.get_by_role("button", name="Replay", exact=True).click()
+    verdict = page.locator(".replayed")
+    expect(verdict).to_contain_text("It agrees up to the end of the recording.")
+    page.click("#cycle")
+    shows(page, "#time", "0.15 s")
+    page.get_by_role("button", name="Read the list again").click()
+    expect(verdict).to_have_text("The recording has changed since it was replayed.")
+    page.get_by_role("button", name="Replay", exact=True).click()
+    expect(verdict).to_contain_text("It agrees up to the end of the recording.")
 
 
 def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], recordings: Path) -> None:
