@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from actr3d.experiment.design import Design, Group, Measured, Normal, Trial, Uniform, design
+from actr3d.experiment.design import Design, Group, Measured, Trial, design
+from actr3d.experiment.distributions import Normal, Uniform
 from actr3d.registry import import_modules
 
 if TYPE_CHECKING:

@@ -23,7 +23,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.text import Text
 
 from actr3d.errors import DesignError, ExperimentError, SettingError, reason_of
-from actr3d.experiment.design import OWN_COLUMNS, plain_text
+from actr3d.experiment.design import OWN_COLUMNS
+from actr3d.experiment.plain_values import plain_text
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import LOCK, SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
@@ -36,7 +37,8 @@ from actr3d.values import to_json
 
 if TYPE_CHECKING:
     from actr3d.experiment.cluster import ExperimentProgress
-    from actr3d.experiment.fit import Agreement, FitResult
+    from actr3d.experiment.fit import FitResult
+    from actr3d.experiment.target import Agreement
 
 EVERY = 10.0
 """Time between two lines of progress where the output is not a terminal [s]."""
@@ -209,7 +211,8 @@ def fit(
         Exception: Any error that the files of the design and of the model themselves raise.
     """
     from actr3d.experiment.cluster import existing_cluster, local_cluster
-    from actr3d.experiment.fit import Fit, HeldOut, Range, TargetMean, check_measure, load_target, measures_of
+    from actr3d.experiment.fit import Fit, HeldOut, Range
+    from actr3d.experiment.target import TargetMean, check_measure, load_target, measures_of
 
     def means(experiment: Experiment, data: str | None, give: str, measure: str | None) -> tuple[TargetMean, ...]:
         data = data or experiment.design.human

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 import signal
 import threading
@@ -13,32 +12,22 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from random import Random
-from statistics import NormalDist
-from typing import Annotated, Any, Literal, Protocol, TypeVar, cast, runtime_checkable
+from typing import Annotated, Any, Literal, TypeVar, cast
 
 from annotated_types import Ge, Gt
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, alternatives, did_you_mean
+from actr3d.experiment.distributions import DIGITS, Distribution
+from actr3d.experiment.plain_values import as_python, check_plain, plain_text
 from actr3d.parameter_schema import Parameter
-from actr3d.values import escape_surrogates
 
-DIGITS = 6
-"""Number of decimals to which drawn values are rounded, so that they are the same on every machine."""
-FEWEST = 1e-6
-"""Minimum probability between the bounds of a normal distribution; with less, nearly all drawn values would be at a bound."""
 FAR = 1e-9
 """Probability in the tails of an unbounded distribution within which the bounds of a parameter are checked."""
 MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
 LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
-LARGEST = 2**63
-"""Whole numbers must be below this, which tables and databases can store."""
-HUGE = 1e100
-"""The maximum size of a number: the squares of larger ones may be infinite."""
-FINEST = 1e-5
-"""The least standard deviation of a distribution."""
 LONGEST_TIMER = 1e8
 """A timer of the system cannot be much longer than this [s]."""
 AGAIN = 1.0
@@ -49,87 +38,6 @@ RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "uni
 """Names of columns of human data and of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
 OWN_NUMBERS = ("seed", "until", "limit")
 """Numbers of a design that `Design.changed` changes under these names."""
-
-
-@runtime_checkable
-class Distribution(Protocol):
-    """A distribution from which values of parameters are drawn."""
-
-    def quantile(self, p: float) -> float:
-        """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
-        ...
-
-
-@dataclass(frozen=True, kw_only=True)
-class Normal(Configuration):
-    """A normal distribution, truncated if there are bounds: `Normal(mean=0.404, sd=0.02, low=0.3, high=0.7)`."""
-
-    mean: float
-    """The mean before truncation."""
-    sd: Annotated[float, Ge(0)]
-    """The standard deviation before truncation."""
-    low: float | None = None
-    """The lower bound of values; None for none."""
-    high: float | None = None
-    """The upper bound of values; None for none."""
-
-    def __post_init__(self) -> None:
-        """Checks the values.
-
-        Raises:
-            ConfigurationError: If a value is not a number.
-            DesignError: If no value, or next to none, lies between the bounds.
-        """
-        super().__post_init__()
-        low, high = self._bounds()
-        if 0 < self.sd < FINEST:
-            raise DesignError(f"Normal.sd: must be 0 or >= {FINEST:g}: values have {DIGITS} decimals (got {self.sd:g}); use a smaller unit")
-        if low > high or (self.sd == 0 and not low <= self.mean <= high):
-            raise DesignError(f"Normal: no value lies between low {low:g} and high {high:g} (mean {self.mean:g}, sd {self.sd:g})")
-        if self.sd > 0 and self._whole.cdf(high) - self._whole.cdf(low) < FEWEST:
-            raise DesignError(f"Normal: low {low:g} and high {high:g} leave out nearly all values (mean {self.mean:g}, sd {self.sd:g})")
-
-    def quantile(self, p: float) -> float:
-        """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
-        if self.sd == 0:
-            return self.mean
-        low, high = self._bounds()
-        below, up_to = self._whole.cdf(low), self._whole.cdf(high)
-        inside = min(max(below + p * (up_to - below), 1e-12), 1 - 1e-12)
-        return min(max(self._whole.inv_cdf(inside), low), high)
-
-    @property
-    def _whole(self) -> NormalDist:
-        """The distribution without its bounds."""
-        return NormalDist(self.mean, self.sd)
-
-    def _bounds(self) -> tuple[float, float]:
-        return -math.inf if self.low is None else self.low, math.inf if self.high is None else self.high
-
-
-@dataclass(frozen=True, kw_only=True)
-class Uniform(Configuration):
-    """A uniform distribution: `Uniform(low=0, high=0.5)`."""
-
-    low: float
-    """The lower bound of values."""
-    high: float
-    """The upper bound of values."""
-
-    def __post_init__(self) -> None:
-        """Checks the values.
-
-        Raises:
-            ConfigurationError: If a value is not a number.
-            DesignError: If the upper bound is below the lower one.
-        """
-        super().__post_init__()
-        if self.low > self.high:
-            raise DesignError(f"Uniform.high: must be >= low {self.low:g} (got {self.high:g})")
-
-    def quantile(self, p: float) -> float:
-        """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
-        return self.low + p * (self.high - self.low)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,7 +60,7 @@ class Group(Configuration):
         _check_names(self.parameters, "Group.parameters")
         object.__setattr__(self, "parameters", {name: as_python(value) for name, value in self.parameters.items()})
         for name, value in self.parameters.items():
-            _check_plain(value, f"Group.parameters['{name}']", name, drawn=True)
+            check_plain(value, f"Group.parameters['{name}']", name, drawn=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -266,7 +174,7 @@ class Design(Configuration):
             if not given:
                 raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
             for number, level in enumerate(levels):
-                _check_plain(level, f"Design.factors['{name}'][{number}]", name)
+                check_plain(level, f"Design.factors['{name}'][{number}]", name)
             # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
             tidy[name] = [float(f"{one:.12g}") if type(one) is float else one for one in levels]
             for key, wrong in ((_key, "must name each level once"), (plain_text, "has two levels with the same text")):
@@ -277,7 +185,7 @@ class Design(Configuration):
                     before[same] = level
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
-            _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
+            check_plain(value, f"Design.settings['{name}']", name, drawn=True)
         if not self.groups:
             raise DesignError("Design.groups: must have at least one group (got {})", "groups")
         for name, group in cast("Mapping[str, Any]", self.groups).items():
@@ -438,7 +346,7 @@ class Design(Configuration):
             if name in self.factors or (name in OWN_COLUMNS and name != "group"):
                 what = "a factor" if name in self.factors else "a column of every table of trials"
                 raise DesignError(f"Design.derive: must not return '{name}', which is {what}; give it another name", "derive")
-            _check_plain(value, f"Design.derive['{name}']", "derive")
+            check_plain(value, f"Design.derive['{name}']", "derive")
         return {**values, **found}
 
     @contextmanager
@@ -628,20 +536,6 @@ class _ReadNames(dict[str, Any]):
         return super().get(name, default)
 
 
-def as_python(value: Any) -> Any:
-    """Returns a value with the numbers and arrays of numpy in it as numbers and lists of Python, which tables and texts can hold.
-
-    A list that contains itself is left as it is.
-    """
-    convert: Any = getattr(value, "tolist", None)
-    if callable(convert):
-        return convert()
-    if type(value) in (list, tuple):
-        with suppress(RecursionError):
-            return type(value)(map(as_python, value))
-    return value
-
-
 def _value(value: Any, seed: str) -> Any:
     """Returns a value, or one that is drawn from it if it is a distribution."""
     return _example(value, Random(seed).random()) if isinstance(value, Distribution) else value
@@ -662,28 +556,6 @@ def _check_names(names: Iterable[Any], where: str) -> None:
             raise DesignError(f"{where}: names must be non-empty strings of printable characters (got {name!r})", where.rpartition(".")[2])
 
 
-def plain_text(value: Any) -> str:
-    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`; `1.0` as `1`."""
-    match value:
-        case None | "":
-            return "none"
-        case float() if math.isnan(value):
-            return "none"
-        case float():
-            return text if float(text := f"{value:g}") == value else repr(float(value))
-        case list() | tuple() | dict():
-            return json.dumps(value)
-        case _:
-            return str(value)
-
-
-def text_cell(value: Any) -> str | None:
-    """Returns a value as it is in a column of texts; None for an empty cell, for which pandas has NaN."""
-    if value is None or isinstance(value, str):
-        return value
-    return None if isinstance(value, float) and math.isnan(value) else plain_text(value)
-
-
 def factor_name(name: str) -> str:
     """Returns the name of a factor in human data and in the tables of a report."""
     return f"{name}_" if name in RESERVED else name
@@ -698,65 +570,6 @@ def _key(value: Any) -> Any:
     if isinstance(value, Distribution) and not isinstance(value, Configuration):  # whose text may be its address in memory
         return (type(value).__name__, *(value.quantile(p) for p in (0.1, 0.5, 0.9)))
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else repr(value)
-
-
-def why_unstorable(value: Any) -> str | None:
-    """Returns in words why tables and databases cannot store a whole number or a text, as the end of an error; None if they can."""
-    if isinstance(value, int) and not -LARGEST <= value < LARGEST:
-        return f"must be a whole number of at most 64 bits, or a float (got one of {value.bit_length()} bits)"
-    if isinstance(value, str) and escape_surrogates(value) != value:
-        return f"must be a text of characters that can be stored (got {value!r})"
-    return None
-
-
-def _has_no_end(value: Any, within: frozenset[int] = frozenset()) -> bool:
-    """Returns whether a list or dict contains itself, or is too deep for Python."""
-    if not isinstance(value, (list, tuple, Mapping)):
-        return False
-    if id(cast("Any", value)) in within:
-        return True
-    parts = cast("Iterable[Any]", value.values() if isinstance(value, Mapping) else value)
-    try:
-        return any(_has_no_end(part, within | {id(cast("Any", value))}) for part in parts)
-    except RecursionError:
-        return True
-
-
-def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False) -> None:
-    """Checks that a value, and each value in it, can be written to tables, to JSON and into the text of a model.
-
-    Args:
-        value: The value.
-        where: What it is the value of, for the error.
-        name: The name that leads to its line.
-        drawn: Whether it may be a distribution.
-
-    Raises:
-        DesignError: If one of them cannot be written.
-    """
-    if drawn and isinstance(value, Distribution) and not isinstance(value, type):
-        return
-    if _has_no_end(value):
-        raise DesignError(f"{where}: must not contain itself, or too many lists and dicts within each other", name)
-    waiting = [value]
-    for one in waiting:
-        wrong = why_unstorable(one)
-        match one:
-            case list() | tuple():
-                waiting += cast("Sequence[Any]", one)
-            case Mapping() if all(isinstance(key, str) for key in cast("Mapping[Any, Any]", one)):
-                waiting += (part for pair in cast("Mapping[str, Any]", one).items() for part in pair)
-            case float() if not math.isfinite(one):
-                wrong = f"must be finite (got {value!r})"
-            case int() | float() | str() | None:
-                pass
-            case Distribution() if not isinstance(one, type):
-                own = "Group.parameters, for one value of each participant, or Design.settings, for one of each trial"
-                raise DesignError(f"{where}: a distribution belongs to {own} (got {value!r})", name)
-            case _:
-                wrong = f"must be a number, text, True, False, None, or a list or dict of these (got {value!r})"
-        if wrong is not None:
-            raise DesignError(f"{where}: {wrong}", name)
 
 
 def _levels(value: Any, before: Sequence[Any]) -> Sequence[Any]:

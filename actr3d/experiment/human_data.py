@@ -43,7 +43,8 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean, reason_of
-from actr3d.experiment.design import HUGE, factor_name, plain_text
+from actr3d.experiment.design import factor_name
+from actr3d.experiment.plain_values import HUGE, plain_text
 from actr3d.parameter_schema import Parameter
 from actr3d.values import shortened
 

@@ -36,7 +36,8 @@ from actr3d.actr.loading.sweep import parameters as variables_of
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean, reason_of
 from actr3d.experiment import designs
-from actr3d.experiment.design import Design, Group, Measured, Normal, Uniform, is_design
+from actr3d.experiment.design import Design, Group, Measured, is_design
+from actr3d.experiment.distributions import Normal, Uniform
 from actr3d.experiment.human_data import library_human_data
 from actr3d.experiment.versions import experiment_versions
 from actr3d.output import printing_nothing

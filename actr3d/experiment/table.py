@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from actr3d.errors import ExperimentError, reason_of
-from actr3d.experiment.design import text_cell
+from actr3d.experiment.plain_values import text_cell
 from actr3d.experiment.store import ROWS_AT_ONCE, Column, Store
 from actr3d.replacing import replacing
 

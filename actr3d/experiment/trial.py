@@ -16,7 +16,8 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import DesignError, ExperimentError, did_you_mean, followed
-from actr3d.experiment.design import HUGE, OWN_COLUMNS, Measured, Trial, as_python, why_unstorable
+from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial
+from actr3d.experiment.plain_values import HUGE, as_python, why_unstorable
 from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
 from actr3d.output import printing_nothing
 from actr3d.parameter_schema import parameters_of

@@ -20,12 +20,12 @@ from actr3d.experiment import cluster
 from actr3d.experiment.cluster import local_cluster
 from actr3d.experiment.command import check_folder_of_fit
 from actr3d.experiment.design import Measured
-from actr3d.experiment.fit import (
-    STARTING,
+from actr3d.experiment.fit import STARTING, Fit, HeldOut, Range
+from actr3d.experiment.report.results import read_results
+from actr3d.experiment.specification import specify
+from actr3d.experiment.store import Store, only_process
+from actr3d.experiment.target import (
     Agreement,
-    Fit,
-    HeldOut,
-    Range,
     TargetMean,
     agreement,
     cells_of_rows,
@@ -35,9 +35,6 @@ from actr3d.experiment.fit import (
     mean_of,
     rmse,
 )
-from actr3d.experiment.report.results import read_results
-from actr3d.experiment.specification import specify
-from actr3d.experiment.store import Store, only_process
 from actr3d.runner.model_factory import Blueprint
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.reports import store_rows

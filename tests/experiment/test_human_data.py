@@ -14,9 +14,9 @@ import pytest
 from actr3d.errors import ExperimentError
 from actr3d.experiment import human_data
 from actr3d.experiment.design import RESERVED
-from actr3d.experiment.fit import load_target
 from actr3d.experiment.human_data import SHOWN, HumanFile, Schema, library_human_data
 from actr3d.experiment.specification import library_designs, specify
+from actr3d.experiment.target import load_target
 from actr3d.parameter_schema import Parameter
 
 SCHEMA = Schema(

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from actr3d.experiment.design import Design, Group, Measured, Uniform, design
+from actr3d.experiment.design import Design, Group, Measured, design
+from actr3d.experiment.distributions import Uniform
 
 BODIES = {"shoulder_width": Uniform(low=0.36, high=0.52), "speed": Uniform(low=0.8, high=2.0)}
 

@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from actr3d.experiment.design import Design, Group, Normal, design
+from actr3d.experiment.design import Design, Group, design
 from actr3d.experiment.designs.warren_whang_1987 import KNOWS_ITS_BODY
+from actr3d.experiment.distributions import Normal
 
 SHORT = 0.8
 """The length of the short bar, in shoulder widths: it does not stand out. Source: chosen; the length is not at hand."""

@@ -1,7 +1,8 @@
 """Starts that are not in line with the doorway."""
 
-from actr3d.experiment.design import Design, Group, Normal, design
+from actr3d.experiment.design import Design, Group, design
 from actr3d.experiment.designs.warren_whang_1987 import KNOWS_ITS_BODY
+from actr3d.experiment.distributions import Normal
 
 
 @design

@@ -1,6 +1,7 @@
 """The experiment of Warren & Whang (1987) on walking through apertures."""
 
-from actr3d.experiment.design import Design, Group, Normal, design
+from actr3d.experiment.design import Design, Group, design
+from actr3d.experiment.distributions import Normal
 
 APERTURES = (0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70)
 """The widths of the doorways [m]. Source: Warren & Whang (1987)."""

@@ -1,8 +1,9 @@
 """Passing apertures from 0.9 to 2.1 shoulder widths, as in Wilmut & Barnett (2010)."""
 
-from actr3d.experiment.design import Design, Group, Normal, design
+from actr3d.experiment.design import Design, Group, design
 from actr3d.experiment.designs.passability_judgement import aperture_of
 from actr3d.experiment.designs.warren_whang_1987 import KNOWS_ITS_BODY
+from actr3d.experiment.distributions import Normal
 
 RATIOS = (0.9, 1.1, 1.3, 1.5, 1.7, 1.9, 2.1)
 """The apertures in shoulder widths. Source: the range of Wilmut & Barnett (2010), in steps of 0.2."""

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.experiment.design import factor_name, plain_text
+from actr3d.experiment.design import factor_name
 from actr3d.experiment.human_data import HumanData
+from actr3d.experiment.plain_values import plain_text
 from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions

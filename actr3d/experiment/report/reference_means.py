@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
-from actr3d.experiment.design import Design, factor_name, plain_text
+from actr3d.experiment.design import Design, factor_name
 from actr3d.experiment.human_data import HumanData, HumanFile, Schema, library_human_data, plain_levels
+from actr3d.experiment.plain_values import plain_text
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.design import OWN_COLUMNS, Design, factor_name, plain_text, text_cell
+from actr3d.experiment.design import OWN_COLUMNS, Design, factor_name
 from actr3d.experiment.human_data import absent_levels, plain_levels
+from actr3d.experiment.plain_values import plain_text, text_cell
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.store import ROWS_AT_ONCE, UNITS, Column, Store, summary

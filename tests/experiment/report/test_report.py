@@ -31,8 +31,8 @@ from actr3d.experiment.aperture.analysis import (
     with_greatest_angles,
 )
 from actr3d.experiment.aperture.constraints import Findings
-from actr3d.experiment.design import Trial, plain_text
-from actr3d.experiment.fit import load_target
+from actr3d.experiment.design import Trial
+from actr3d.experiment.plain_values import plain_text
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
@@ -47,6 +47,7 @@ from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
+from actr3d.experiment.target import load_target
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.folders import not_writable
 from tests.helpers.reports import store_rows, walk
