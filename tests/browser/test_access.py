@@ -240,3 +240,26 @@ def test_by_keyboard_alone_one_gets_everywhere_and_sees_where_one_is(page: Page)
             page.keyboard.press("Tab")
     for name in ("run", "step", "until", "aperture", "tab-buffers", "Width of the panels", "Height of the timeline", "timeline"):
         assert name in reached, reached
+
+
+def test_with_forced_colours_one_sees_what_is_chosen_and_where_one_is(pages: Callable[..., Page]) -> None:
+    page = pages(tab="productions")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.5)
+    shows(page, "#time", r"t = 0\.50 s")
+    page.get_by_role("region", name="Firing trace").press("End")
+    page.emulate_media(forced_colors="active")
+    back = "(at) => getComputedStyle(at).backgroundColor.match(/\\d+/g).slice(0, 3).join()"  # forced ones keep their opacity
+    for kind, state in (
+        ("[role=tab]", "[aria-selected=true]"),
+        (".timeline button", "[aria-pressed=true]"),
+        ("#events tr td", ".chosen td"),
+        (".production-names li", ".chosen"),
+    ):
+        chosen, other = page.locator(f"{kind}:is({state})").first, page.locator(f"{kind}:not({state})").last
+        assert chosen.evaluate(back) != other.evaluate(back), kind
+    border = page.get_by_role("separator", name="Width of the panels")
+    before = border.evaluate(back)
+    border.focus()
+    assert border.evaluate(back) != before
+    page.emulate_media(forced_colors="none")
