@@ -34,7 +34,7 @@ const isAreaThere = (area) => alone === null && area in AREAS && (area !== "scen
 const notThere = (area) => (alone === null && area === "scene" ? "This model has no 3D view." : "This window shows one panel.");
 
 const ROWS = 344; // the height of the default rows of a model with a body [px]
-const LEAST = 120; // with some rows of the timeline [px]
+const LEAST = 140; // with some rows of the timeline [px]
 const OTHERS = 400; // the height of everything else on a low page, where bar and tabs have two lines each [px]
 /** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
 export const panelsWidth = ofKind("side width", embedded === null ? Math.max(784, Math.round(0.38 * innerWidth)) : Math.round(0.45 * innerWidth));

@@ -59,7 +59,20 @@ export async function fetchFile(path, signal, progress) {
   return blob;
 }
 
+/** Returns the response. A request that changes nothing is repeated until the workbench answers this browser: it may have been started again. */
 async function answerOf(path, options) {
+  const isQuestion = options.method === "GET";
+  for (;;) {
+    const response = await oneAnswer(path, options).catch((error) => {
+      if (!isQuestion || options.signal?.aborted) throw error;
+    });
+    if (response && !(isQuestion && response.status === 401)) return response;
+    do await new Promise((resolve) => setTimeout(resolve, AGAIN));
+    while (connected.peek() === false);
+  }
+}
+
+async function oneAnswer(path, options) {
   const answered = awaited();
   try {
     const response = await fetch(path, options);

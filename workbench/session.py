@@ -204,11 +204,13 @@ class Session(Broadcast, Receiver):
         self.changed(facts=True)
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
+        launched = self._run_of(worker)
+        if launched is not None and launched.stuck is not None and isinstance(message, (Reply, State)):
+            launched.stuck = None
+            self.changed(facts=True)
         if isinstance(message, Reply):
             self._waiting.take(message)
-            return
-        launched = self._run_of(worker)
-        if launched is None:
+        if launched is None or isinstance(message, Reply):
             return
         if isinstance(message, Facts) and launched is self._loading:
             self._swap(launched, message)
@@ -219,7 +221,7 @@ class Session(Broadcast, Receiver):
                 self._notify_watchers(message)
                 self.changed(facts=True)
             case State() if shown:
-                self._take_state(launched, message)
+                self._take_state(message)
             case NewEvents() if shown:
                 self.log.add(message.first, message.events)
             case EventsRemoved() if shown:
@@ -244,7 +246,7 @@ class Session(Broadcast, Receiver):
             case Notice() if not shown or not self._was_given(message):
                 launched.unwritten = message.text if message.unwritten else launched.unwritten
                 self.add_notice(message, start)
-            case Position():
+            case Position() if self.busy(worker):  # it may have ended meanwhile
                 launched.stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
                 self.changed(facts=True)
             case _:
@@ -261,10 +263,7 @@ class Session(Broadcast, Receiver):
             del self._given[next(iter(self._given))]
         return False
 
-    def _take_state(self, launched: LaunchedRun, state: State) -> None:
-        if launched.stuck is not None:
-            launched.stuck = None
-            self.changed(facts=True)
+    def _take_state(self, state: State) -> None:
         self.state = state
         self.state_version += 1
         self._notify_watchers(state)

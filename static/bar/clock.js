@@ -13,6 +13,6 @@ export function Clock() {
   const text = time === undefined ? "–" : `t = ${runTimeText(time)}`;
   return html`<div class="clock">
     <${Button} id="time" class="bare" disabled=${!alive.value} title=${buttonTitle(goToTime)} aria-label="Time of the run: ${text}. Go to a time" onClick=${() => run(goToTime)}>${text}<//>
-    <output id="measured" aria-label="Measured speed">${measured ? `${measured.toFixed(measured < 1 ? 2 : measured < 100 ? 1 : 0)} x` : ""}</output>
+    <output id="measured" aria-live="off" aria-label="Measured speed">${measured ? `${measured.toFixed(measured < 1 ? 2 : measured < 100 ? 1 : 0)} x` : ""}</output>
   </div>`;
 }

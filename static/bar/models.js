@@ -4,7 +4,7 @@ import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preac
 import { addressed, addressedTime, alone, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
 import { exactTime, TIMES, timeText } from "../parts/units.js";
-import { AGAIN, call, connect, request, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
+import { call, connect, request, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, connected, isShared, notify, running, session, shownRecording } from "../store.js";
@@ -201,8 +201,7 @@ export async function begin() {
   try {
     await listModels();
   } catch (error) {
-    if (error.status === 0) setTimeout(begin, AGAIN); // the status line shows that there is no connection
-    else notify(error.message);
+    notify(error.message);
     return;
   }
   if (model.value !== null) return; // the user has already chosen one

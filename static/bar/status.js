@@ -36,7 +36,7 @@ export function StatusLine() {
       ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
     </span>
     ${embedded === null ? html`<${Share} />` : null}
-    <span id="connection" class=${connected.value === false || silent.value ? "bad" : ""}>
+    <span id="connection" role="status" class=${connected.value === false || silent.value ? "bad" : ""}>
       ${silent.value ? "no answer" : connected.value === false ? (restarted.value ? RESTARTED : LOST) : connected.value ? "connected" : "connecting …"}
     </span>
   </footer>`;

@@ -53,7 +53,7 @@ const theme = EditorView.theme({
   ".cm-panel.cm-search input, .cm-panel.cm-search button": { fontSize: "12px", margin: "2px 4px 2px 0" },
   ".cm-panel.cm-search label": { fontSize: "12px", display: "inline-flex", alignItems: "center", gap: "3px", marginRight: "8px" },
   ".cm-panel.cm-search [name=close]": { top: "4px", right: "6px", fontSize: "16px", color: "var(--text)" },
-  ".cm-textfield": { minHeight: "26px", padding: "2px 6px", borderRadius: "var(--radius)", border: "1px solid var(--line)", backgroundColor: "var(--field)", color: "var(--text)" },
+  ".cm-textfield": { minHeight: "26px", padding: "2px 6px", borderRadius: "var(--radius)", border: "1px solid var(--strong-line)", backgroundColor: "var(--field)", color: "var(--text)" },
   ".cm-button": { minHeight: "26px", padding: "2px 9px", border: "1px solid var(--line)", borderRadius: "var(--radius)", backgroundImage: "none", backgroundColor: "var(--raised)", color: "var(--text)", cursor: "pointer" },
   ".cm-button:hover": { borderColor: "var(--strong-line)" },
   ".cm-button:active": { backgroundImage: "none", backgroundColor: "var(--chosen)" },

@@ -30,6 +30,6 @@ export function Retina({ view, pointed = null }) {
   return html`<div class="retina">
     ${view?.extents.length === 0 ? html`<p class="retina-nothing">Nothing is in view of this eye now.</p>` : null}
     <canvas ref=${canvas} role="img" aria-label="What the eye sees: extents by row" onPointerMove=${point} onPointerLeave=${() => setUnder(null)}></canvas>
-    <output class="mono">${under ? extentText(under) : view ? `${counted(new Set(view.extents.map(([, label]) => label)).size, "object")} in view` : ""}</output>
+    <output class="mono" aria-live="off">${under ? extentText(under) : view ? `${counted(new Set(view.extents.map(([, label]) => label)).size, "object")} in view` : ""}</output>
   </div>`;
 }

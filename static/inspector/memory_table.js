@@ -78,7 +78,7 @@ export function MemoryTable({ answer, words }) {
   const under = ({ activation }) => threshold !== null && activation !== null && activation < threshold;
   const mark = sort.by === "activation" ? all.findIndex((row, n) => n > 0 && under(row) !== under(all[n - 1]) && row.activation !== null && all[n - 1].activation !== null) : -1;
 
-  const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${chunkText(shownSlots(all[n]))} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
+  const row = (n, attributes) => html`<tr key=${all[n].chunk} ...${attributes} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" title=${chunkText(shownSlots(all[n]))} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
     <td><${Chunk} chunk=${shownSlots(all[n])} /></td>
     <td class="number">${all[n].activation === null ? html`<span class="quiet" title="A part of the activation is computed only at a retrieval; the order is that of the other parts">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
     ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${all[n].parts[name]} /></td>`)}

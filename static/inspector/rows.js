@@ -9,7 +9,7 @@ const SPARE = 12; // the number of rows drawn beyond the visible ones
 
 /**
  * @param count The number of rows.
- * @param row Returns row n.
+ * @param row Returns row n, a `tr` with these attributes.
  * @param head The cells of the head.
  * @param columns The widths of the columns.
  * @param aim The number of a row that stays visible until the user scrolls away from it; null for none.
@@ -80,12 +80,13 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     view.look();
   }
 
+  const rowId = (n) => `${id}-${n}`;
   const [from, to] = view.range(count, ROW, SPARE);
   const drawn = [];
-  for (let n = from; n < to; n += 1) drawn.push(row(n));
+  for (let n = from; n < to; n += 1) drawn.push(row(n, { id: rowId(n), "aria-rowindex": n + 2, "aria-selected": n === chosen }));
   return html`<div class="rows-frame">
-    <div class="rows" ref=${box} tabindex="0" role="region" aria-label=${label} onScroll=${scrolled} onKeyDown=${press}>
-      <table id=${id} role="grid" aria-label=${label} aria-rowcount=${count}>
+    <div class="rows" ref=${box} tabindex="0" role="group" aria-label=${label} aria-activedescendant=${chosen >= from && chosen < to ? rowId(chosen) : null} onScroll=${scrolled} onKeyDown=${press}>
+      <table id=${id} role="grid" aria-label=${label} aria-rowcount=${count + 1}>
         <colgroup>${columns.map((width, n) => html`<col key=${n} style=${{ width }} />`)}</colgroup>
         <thead>
           <tr>${head}</tr>

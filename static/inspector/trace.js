@@ -57,14 +57,13 @@ function goTo(number, [time]) {
   return travel((Math.ceil(time / tick) * tick) / 1e6);
 }
 
-function Row({ number, event, ahead, chosen, several, onChoose }) {
+function Row({ number, event, ahead, chosen, several, onChoose, attributes }) {
   const [time, source, kind] = event;
   const [what, more] = eventText(event);
   const go = () => (onChoose(), goTo(number, event));
   return html`<tr
     class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
-    id="event-${number}"
-    aria-selected=${chosen}
+    ...${attributes}
     title="${eventMomentText(time)}  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
     onClick=${go}
   >
@@ -101,10 +100,10 @@ export function FiringTrace() {
   const at = chosen === null ? -1 : filtered.below(chosen);
   const chosenRow = chosen < 0 ? (mixed.rowOfContact(chosen) ?? null) : filtered.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
 
-  const row = (n) => {
+  const row = (n, attributes) => {
     const number = mixed.numberAt(n);
     const event = mixed.at(number);
-    return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
+    return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} attributes=${attributes} />`;
   };
   const open = (n) => goTo(mixed.numberAt(n), mixed.at(mixed.numberAt(n)));
   const nothing = list.length === 0 || (runStatus.value.is === "ready" && wantedWords.value === "") ? nothingYet() : "All events are filtered out.";

@@ -18,7 +18,7 @@ import { buttonTitle, noteKey } from "../keys.js";
 import { goToTab } from "../open_tab.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
-import { session } from "../store.js";
+import { connected, session } from "../store.js";
 
 const needs = "models folder";
 const AGAIN = 3000; // how often it checks whether the file has changed on disk [ms]
@@ -84,7 +84,7 @@ async function choose(document, which) {
 function useLooking() {
   useEffect(() => {
     function lookAt(list) {
-      if (document.visibilityState === "hidden") return;
+      if (document.visibilityState === "hidden" || connected.value === false) return;
       for (const one of list) look(one).catch(() => {}); // a failed request is repeated next time
     }
     function returned() {

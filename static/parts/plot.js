@@ -85,7 +85,7 @@ export function Plot({ title, series, span, height, cursor, source }) {
           const value = at === null ? "" : numberText(valueAt(curve, at));
           return html`<span key=${n} class="plot-name" title=${name}>
             <svg width="14" height="8" aria-hidden="true"><line x1="0" y1="4" x2="14" y2="4" stroke="var(--${colour ?? seriesColour(n)})" stroke-width="2" stroke-dasharray=${(dash ?? []).join(" ")} /></svg>
-            <span class="plot-of">${name}</span> <output>${value}</output>
+            <span class="plot-of">${name}</span> <output aria-live="off">${value}</output>
           </span>`;
         })}
       </span>

@@ -14,12 +14,13 @@ const STEP = 24; // the step of an arrow key [px]
  */
 export function Splitter({ size, along, label, least, most, reversed = false }) {
   const clamp = (value) => Math.round(Math.max(least, Math.min(most(), value)));
+  const now = () => clamp(size.value); // in a small window, less than what was chosen
   const place = (event) => (along === "columns" ? event.clientX : event.clientY);
 
   function begin(event) {
     const bar = event.currentTarget;
     const from = place(event);
-    const before = size.value;
+    const before = now();
     bar.setPointerCapture(event.pointerId);
     document.body.dataset.dragging = along; // frames receive no pointer events meanwhile
     bar.onpointermove = (moved) => (size.value = clamp(before + (reversed ? place(moved) - from : from - place(moved))));
@@ -33,7 +34,7 @@ export function Splitter({ size, along, label, least, most, reversed = false }) 
   function press(event) {
     const keys = along === "columns" ? ["ArrowLeft", "ArrowRight"] : ["ArrowUp", "ArrowDown"];
     const [larger, smaller] = reversed ? keys.reverse() : keys;
-    const to = { [larger]: size.value + STEP, [smaller]: size.value - STEP, Home: least, End: most() }[event.key];
+    const to = { [larger]: now() + STEP, [smaller]: now() - STEP, Home: least, End: most() }[event.key];
     if (to === undefined) return;
     event.preventDefault();
     size.value = clamp(to);
@@ -45,7 +46,7 @@ export function Splitter({ size, along, label, least, most, reversed = false }) 
     tabindex="0"
     aria-label=${label}
     aria-orientation=${along === "columns" ? "vertical" : "horizontal"}
-    aria-valuenow=${size.value}
+    aria-valuenow=${now()}
     aria-valuemin=${least}
     aria-valuemax=${most()}
     onPointerDown=${begin}

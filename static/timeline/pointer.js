@@ -6,7 +6,8 @@ import { AXIS, chosenColumn, column, plotEndingAt, resize } from "./rows.js";
 import { furthest, goTicks, present, seek } from "./seek.js";
 import { pan, zoom } from "./view.js";
 
-const GRIP = 4; // the distance at which the border of the column of names can be dragged [px]
+const GRIP = 4; // the distance at which the border of the column of names, or of a plot, can be dragged [px]
+const FINGER = 12; // the same by touch [px]
 const HANDLE = 20; // the same for the label of the playhead, in the axis [px]
 const STILL = 3; // a pointer that has moved by at most this has clicked [px]
 const COLUMN = [70, 360]; // the limits of the column's width [px]
@@ -15,8 +16,8 @@ const LINE = 16; // a line of the wheel [px]
 export const FEW = 5; // the ticks of a step with Shift
 
 /** Returns the area at a position of the timeline: "border", "axis", "names", "lanes", or "height" at the lower border of the name of a plot. */
-export function partAt(x, y) {
-  if (Math.abs(x - column.peek()) <= GRIP) return "border";
+export function partAt(x, y, grip = GRIP) {
+  if (Math.abs(x - column.peek()) <= grip) return "border";
   if (x < column.peek()) return y > AXIS && plotEndingAt(y, GRIP) ? "height" : "names";
   return y < AXIS ? "axis" : "lanes";
 }
@@ -30,13 +31,16 @@ function placeIn(event, stage) {
   return [event.clientX - left, event.clientY - top];
 }
 
-/** Starts to scrub, to pan, or to set the width of the names or the height of a plot. */
+/** Returns the box whose rows scroll below the stage. */
+const rowsOf = (stage) => stage.parentElement.parentElement;
+
+/** Starts to scrub, to pan, to scroll the rows by their names, or to set the width of the names or the height of a plot. */
 export function begin(event) {
   if (event.button !== 0) return;
   const stage = event.currentTarget;
   let [x, y] = placeIn(event, stage);
-  const there = partAt(x, y);
-  if (there === "names") return;
+  const { scrollTop: top } = rowsOf(stage);
+  const there = partAt(x, y, event.pointerType === "touch" ? FINGER : GRIP);
   const resized = there === "height" ? plotEndingAt(y, GRIP) : null;
   const part = there === "axis" && Math.abs(x - placeOf(present.peek(), viewOf(stage.clientWidth))) <= HANDLE ? "lanes" : there;
   const began = x;
@@ -46,6 +50,7 @@ export function begin(event) {
     still &&= Math.abs(to - began) <= STILL;
     if (part === "axis" && still) return;
     if (resized) resize(resized.plot, resized.height + toY - y);
+    else if (part === "names") rowsOf(stage).scrollTop = top + y - toY;
     else if (part === "border") chosenColumn.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
     else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), reach.peek());
     else seek(Math.max(0, timeOf(to, viewOf(stage.clientWidth))));
@@ -83,7 +88,7 @@ export function press(event) {
   const to = { Home: 0, End: furthest.peek() }[event.key];
   if (ticks !== undefined) goTicks(event.shiftKey ? FEW * ticks : ticks);
   else if (to !== undefined) seek(to);
-  else if (event.key === "ArrowDown" || event.key === "ArrowUp") event.currentTarget.parentElement.parentElement.scrollBy(0, event.key === "ArrowDown" ? 36 : -36);
+  else if (event.key === "ArrowDown" || event.key === "ArrowUp") rowsOf(event.currentTarget).scrollBy(0, event.key === "ArrowDown" ? 36 : -36);
   else return;
   event.preventDefault();
 }

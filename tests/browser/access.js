@@ -1,7 +1,7 @@
 // What of a page cannot be read, named or reached by keyboard: a list of texts. Frames are not looked into.
 () => {
   const MIN_CONTRAST = 4.5; // contrast of text, WCAG 2.2 AA
-  const LARGE = 3; // and of large text, 24 px, or 18.66 px and bold
+  const LARGE = 3; // and of large text, 24 px, or 18.66 px and bold; and of what shows where a field is
   const INTERACTIVE = "button, a[href], input, select, textarea, summary, [role=tab], [role=slider], [role=separator][tabindex], [role=checkbox], [role=button]";
   const found = [];
   const canvas = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
@@ -58,6 +58,14 @@
     const own = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
     if (own && !["SCRIPT", "STYLE", "OPTION", "OPTGROUP"].includes(element.tagName)) readable(element, getComputedStyle(element).color, "text");
     if (element.placeholder && !element.value) readable(element, getComputedStyle(element, "::placeholder").color, "placeholder");
+  }
+
+  const FIELD = "textarea, input:not([type=range], [type=checkbox], [type=radio], [type=file])";
+  for (const element of document.body.querySelectorAll(FIELD)) {
+    if (!seen(element) || isOff(element)) continue;
+    const back = behind(element.parentElement);
+    const ratio = contrast(over(rgba(getComputedStyle(element).borderTopColor), back), back);
+    if (ratio < LARGE - 0.005) found.push(`contrast ${ratio.toFixed(2)} of the border of a field: ${say(element)} ${element.ariaLabel ?? element.id}`);
   }
 
   /** Returns what an element is called, as far as this page names things. */

@@ -240,3 +240,57 @@ def test_by_keyboard_alone_one_gets_everywhere_and_sees_where_one_is(page: Page)
             page.keyboard.press("Tab")
     for name in ("run", "step", "until", "aperture", "tab-buffers", "Width of the panels", "Height of the timeline", "timeline"):
         assert name in reached, reached
+
+
+def test_with_forced_colours_one_sees_what_is_chosen_and_where_one_is(pages: Callable[..., Page]) -> None:
+    page = pages(tab="productions")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.5)
+    shows(page, "#time", r"t = 0\.50 s")
+    page.get_by_role("group", name="Firing trace").press("End")
+    page.emulate_media(forced_colors="active")
+    back = "(at) => getComputedStyle(at).backgroundColor.match(/\\d+/g).slice(0, 3).join()"  # forced ones keep their opacity
+    for kind, state in (
+        ("[role=tab]", "[aria-selected=true]"),
+        (".timeline button", "[aria-pressed=true]"),
+        ("#events tr td", ".chosen td"),
+        (".production-names li", ".chosen"),
+    ):
+        chosen, other = page.locator(f"{kind}:is({state})").first, page.locator(f"{kind}:not({state})").last
+        assert chosen.evaluate(back) != other.evaluate(back), kind
+    border = page.get_by_role("separator", name="Width of the panels")
+    before = border.evaluate(back)
+    border.focus()
+    assert border.evaluate(back) != before
+    page.emulate_media(forced_colors="none")
+
+
+SPOKEN = """() => {
+  window.spoken = {};
+  const live = "[role=status], [role=alert], [role=log], [aria-live], output";
+  const note = ({ target }) => {
+    const region = (target.closest ? target : target.parentElement).closest(live);
+    if (!region?.textContent.trim() || region.ariaLive === "off") return;
+    (window.spoken[region.id || region.className] ??= new Set()).add(region.textContent);
+  };
+  new MutationObserver((changes) => changes.forEach(note)).observe(document.body, { subtree: true, childList: true, characterData: true });
+}"""
+"""Collects what a screen reader speaks of changes."""
+
+
+def test_a_screen_reader_hears_the_chosen_row_and_of_a_run_that_it_goes_on(pages: Callable[..., Page]) -> None:
+    page = pages(tab="productions", paced=True)
+    shows(page, "#status", "at its start")
+    page.evaluate(SPOKEN)
+    page.click("#run")
+    shows(page, "#time", r"t = (0\.[5-9]|[1-9])")
+    page.click("#run")
+    shows(page, "#status", "paused")
+    spoken = page.evaluate("Object.entries(window.spoken).map(([where, texts]) => [where, [...texts]])")
+    assert [where for where, texts in spoken if len(texts) > 3] == [], spoken
+    rows = page.get_by_role("group", name="Firing trace")
+    for number, key in enumerate(("Home", "ArrowDown")):
+        rows.press(key)
+        expect(rows).to_have_attribute("aria-activedescendant", f"events-{number}")
+        expect(page.locator(f"#events-{number}[aria-rowindex='{number + 2}']")).to_have_attribute("aria-selected", "true")
+    expect(page.locator("#connection[role=status]")).to_have_text("connected")

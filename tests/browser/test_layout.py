@@ -299,3 +299,15 @@ def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pag
     page.get_by_role("tab", name="Memory").click()
     until(page, lambda: panel.evaluate("one => one.clientHeight") >= 150)
     assert rows.evaluate("one => one.clientHeight") >= 20
+
+
+def test_at_twice_the_size_the_page_scrolls_and_nothing_is_cut_off(pages: Pages) -> None:
+    page = pages("doorway.py", width=640, height=400, tab="parameters")  # as with a zoom of 200 %
+    shows(page, "#status", "at its start")
+    expect(page.get_by_role("button", name="Defaults")).to_be_visible()
+    cut = "(part) => [part.scrollWidth - part.clientWidth, part.scrollHeight - part.clientHeight]"
+    assert page.locator(".below").evaluate(cut) == [0, 0]
+    assert page.locator(".tab-panel").evaluate(cut)[0] == 0
+    page.locator(".status-line").scroll_into_view_if_needed()
+    expect(page.locator(".timeline-rows")).to_be_in_viewport(ratio=1)
+    assert page.locator(".timeline-rows").evaluate("one => one.clientHeight") >= 60

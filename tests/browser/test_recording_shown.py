@@ -575,7 +575,7 @@ def test_a_long_recording_shows_at_its_start_what_will_happen_there(pages: Pages
         page, lambda: page.evaluate("async () => (await part('store.js')).events.value.first") == 0
     )  # the server has sent the last 50,000
     expect(page.locator(".gap-note")).to_have_count(0)
-    page.get_by_role("region", name="Firing trace").press("Home")
+    page.get_by_role("group", name="Firing trace").press("Home")
     expect(rows.first).to_contain_text("line 0")
     expect(rows.first).to_have_class(re.compile("ahead"))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import socket
@@ -21,8 +22,9 @@ from actr3d.vision.kernel import detect
 from tests.helpers.camera_scenes import seen
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.jobs import Job, doing
+from workbench.page_commands.agents import Explain
 from workbench.worker.fork_server import compile_camera, compile_detectors
-from workbench.worker.messages import Start
+from workbench.worker.messages import AskPosition, Start
 
 AGENT = """
 import os, signal, sys, time
@@ -355,6 +357,26 @@ def test_detectors_are_compiled_beforehand_in_the_form_that_the_views_of_a_camer
     opening(view)
     obstacle(view)
     assert [len(function.signatures) for function in compiled] == [1, 1]
+
+
+def test_a_run_that_has_ended_or_answered_is_not_busy(desk: Desk, tmp_path: Path) -> None:
+    """It may say where it is after it has ended, or while it works on a question."""
+    talk = desk.begin(tmp_path, of("goal.set('done')"), run=True, wait="ended")
+    worker: Any = talk.session._worker
+
+    async def ask_position() -> None:
+        worker.send(AskPosition())
+        await asyncio.sleep(0.2)
+
+    desk.do(ask_position())
+    assert talk.facts["stuck"] is None
+
+    async def ask_more() -> None:
+        worker.send(AskPosition())
+        await Explain().submit(talk.session)
+
+    desk.do(ask_more())
+    assert talk.facts["stuck"] is None
 
 
 @pytest.mark.slow
