@@ -104,6 +104,7 @@ def test_the_graph_is_saved_as_a_picture_of_what_it_shows(pages: Callable[..., P
     page = pages("counting.py", tab="graph")
     page.click("#cycle")
     shows(page, "#status", "start_counting fired")
+    expect(page.locator(".graph .edge")).to_have_count(6)
 
     def saved(kind: str) -> Path:
         with page.expect_download() as download:

@@ -1385,7 +1385,7 @@ def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pa
     say(page, type="until", time=30)
     shows(page, "#status", "30|ended")
     shown = "async () => (await part('timeline/view.js')).span.value.to"
-    becomes_true(page, "async () => (await part('run_status.js')).lastEvent() > 0.1")
+    becomes_true(page, "async () => (await part('run_status.js')).lastEvent() > 0.1 && (await part('timeline/seek.js')).furthest.value > 0")
     last = page.evaluate("async () => (await part('run_status.js')).lastEvent()")
     newest = page.evaluate("async () => (await part('timeline/seek.js')).furthest.value")
     assert last < 0.5 * newest
