@@ -90,8 +90,10 @@ class Emulator:
         tried = np.einsum("nk,nk->n", differences, differences)
         self._least = float(tried.min())
         self._good = points[tried <= self._most]
-        self.is_confirmed = len(points) > self._axes and bool(np.any(self._squares(points) <= self._most))
-        """Whether a candidate fits about as well as the minimum, but for the noise of its means; otherwise, the minimum is a guess."""
+        near = free <= 0 or bool(np.any(self._squares(points) <= self._most))
+        self.is_confirmed = len(points) > self._axes and near
+        """Whether a candidate fits about as well as the minimum, but for the noise of its means; otherwise, the minimum is a guess. With no
+        more means than parameters, nothing says how well that is: only what the model does at the minimum confirms it, see `agrees`."""
 
     def agrees(self, means: Array, errors: Array, errors_of_candidates: Array) -> bool:
         """Returns whether the model does as predicted: at the minimum it fits as well, no candidate fits better, and the means of all

@@ -255,6 +255,14 @@ def test_as_many_parameters_as_data_have_no_interval() -> None:
     assert None not in Emulator(points, points * [1, 2], np.array([0.4, 0.9])).interval(0)
 
 
+def test_a_fit_to_as_many_means_as_parameters_is_confirmed_by_what_the_model_does_at_the_minimum() -> None:
+    points = np.linspace(0.05, 0.95, 10)[:, None]
+    emulator, none = Emulator(points, points, np.array([0.4])), np.zeros(1)
+    assert emulator.is_confirmed
+    assert emulator.agrees(emulator.minimum, none, np.zeros((10, 1)))
+    assert not emulator.agrees(emulator.minimum + 0.1, none, np.zeros((10, 1)))
+
+
 def test_means_of_any_size_have_the_same_intervals() -> None:
     data = 0.5 * X + np.random.default_rng(1).normal(0, 0.1, 8)
     points = np.append(np.linspace(0, 1, 20), 0.5)[:, None]

@@ -276,6 +276,9 @@ def measure_sections(parts: Sequence[Results], others: Sequence[ReferenceMeans],
         "number of measures."
     )
     texts: list[Part] = [note]
+    with_values = {name for part in parts for name in (*part.measures, *part.outcomes)}
+    if empty := [measure.name for measure in parts[0].design.kept if measure.name not in with_values]:
+        texts.append(Caution(f"No trial has a value of: {', '.join(empty)}."))
     failed = [why for name in parts[0].outcomes if (why := _add(texts, f"measure '{name}'", _outcomes(parts[0], name)))]
     found = [Section(title="All measures", parts=texts, failed="; ".join(failed))]
     return found + [_measure_section(part, name, others, secondary=secondary) for part in parts for name in part.measures]

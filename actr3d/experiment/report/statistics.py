@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -29,6 +30,8 @@ MAX_SHAPIRO = 5_000
 """The maximum number of participants that the test of Shapiro and Wilk takes; of more, some from all groups are taken."""
 ROUNDING_ERROR = 1e-12
 """A standard deviation below this, relative to the values, is rounding."""
+TOO_SMALL = f"the means differ by less than {ROUNDING_ERROR:g}, which counts as rounding; measure in a smaller unit"
+"""Why a measure of which only the unit is too large is not tested."""
 NO_SPREAD = 1e-6
 """Participants differ in an effect if the standard deviation of their differences is above this, relative to that of all means.
 Analyses of variance subtract sums of squares, which have 15 to 16 digits: of smaller differences, nothing but rounding is left."""
@@ -43,8 +46,12 @@ def bootstrap_interval(values: Sequence[float]) -> tuple[float, float]:
     """Returns the 95 % percentile interval of the mean over bootstrap samples of participants; NaN for fewer than two."""
     given = np.asarray(values, dtype=float)
     given = given[np.isfinite(given)]
-    if len(given) < 2:
-        return float("nan"), float("nan")
+    return _bootstrapped(given.tobytes()) if len(given) > 1 else (float("nan"), float("nan"))
+
+
+@lru_cache(maxsize=10_000)  # a report needs the interval of the same mean for its figure, its table, and each comparison
+def _bootstrapped(values: bytes) -> tuple[float, float]:
+    given = np.frombuffer(values)
     draw, n = np.random.default_rng([SEED, len(given)]), len(given)
     rows = max(1, AT_ONCE // n)
     counts = [min(rows, RESAMPLES - begin) for begin in range(0, RESAMPLES, rows)]
@@ -137,14 +144,15 @@ def run_tests(results: Results, measure: str) -> Tests:
     reason = ""
     if not grouped and not factors:
         reason = "the design has one group and no factor"
-    elif len(means) < 2 or np.std(means["value"]) <= _rounding(means):
-        reason = "all means are the same"
+    elif len(means) > 1 and (spread := np.std(means["value"])) <= _rounding(means):
+        reason = "all means are the same" if spread <= ROUNDING_ERROR * np.abs(means["value"]).max() else TOO_SMALL
     elif len(sizes) < len(results.groups) or sizes.min() < MIN_FOR_TESTS:
         reason = f"a group has fewer than {MIN_FOR_TESTS} participants with a value in every cell"
     if reason:
         return Tests(anova=None, mixed_model=None, assumptions=None, notes=[f"Not tested: {reason}."])
     if lost:
-        notes.append(f"{lost} participants without a value in some cell are not part of the analysis of variance.")
+        who = "1 participant" if lost == 1 else f"{lost} participants"
+        notes.append(f"Not part of the analysis of variance: {who} without a value in some cell.")
     if grouped and factors and sizes.nunique() > 1:
         counts = ", ".join(f"{name} {sizes[name]}" for name in results.groups)
         notes.append(

@@ -15,8 +15,10 @@ import pytest
 from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.passing import baseline_angle
 from actr3d.experiment.report import statistics
+from actr3d.experiment.report.general import measure_sections
 from actr3d.experiment.report.libraries import pandas
-from actr3d.experiment.report.results import Results, read_results
+from actr3d.experiment.report.parts import Caution
+from actr3d.experiment.report.results import Results, by_number, read_results
 from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, participant_means, rmse_and_r, run_tests
 from tests.helpers.experiments import write_experiment
 from tests.helpers.reports import store_rows
@@ -233,6 +235,32 @@ def test_what_a_design_does_not_allow_is_not_tested_and_says_why(tmp_path: Path)
     assert few.anova is None
     assert few.notes == ["Not tested: a group has fewer than 3 participants with a value in every cell."]
     assert run_tests(results, "luck").notes == ["Not tested: all means are the same."]
+
+
+def test_reasons_why_nothing_is_tested_are_true_of_tiny_values_single_means_and_a_lost_participant(tmp_path: Path) -> None:
+    tiny = stored(tmp_path / "tiny", lambda trial: 1e-13 * (slower(trial) + own(trial)))
+    assert run_tests(tiny, "rt").notes == [
+        "Not tested: the means differ by less than 1e-12, which counts as rounding; measure in a smaller unit."
+    ]
+    one = GROUPED.replace(', "old": Group(participants=4)', "").replace("participants=4", "participants=1")
+    single = stored(tmp_path / "single", slower, one)
+    single = replace(single, rows=single.rows[(single.rows["n_"] == 1) & (single.rows["mode"] == "count")])
+    assert run_tests(single, "rt").notes == ["Not tested: a group has fewer than 3 participants with a value in every cell."]
+    lost = stored(tmp_path / "lost", lambda trial: slower(trial) + own(trial))
+    lost = replace(lost, rows=lost.rows[(lost.rows["participant"] != "old 1") | (lost.rows["n_"] == 1)])
+    assert run_tests(lost, "rt").notes[0] == "Not part of the analysis of variance: 1 participant without a value in some cell."
+
+
+def test_the_interval_of_a_mean_is_drawn_once_for_all_parts_of_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    results = grouped(tmp_path, effect=1.0)
+    means = cell_means(results.rows, "rt", ["group"])
+    monkeypatch.delattr(np.random, "default_rng")
+    assert cell_means(results.rows, "rt", ["group"]).equals(means)
+
+
+def test_measures_that_a_design_names_and_no_trial_has_are_named(tmp_path: Path) -> None:
+    results = replace(grouped(tmp_path, effect=0.0), measures=["luck"])  # as read from a folder without a value of `rt`
+    assert Caution("No trial has a value of: rt.") in measure_sections(by_number(results), [])[0].parts
 
 
 def stored(folder: Path, rt: Callable[[Any], float], design: str = GROUPED) -> Results:
