@@ -88,7 +88,10 @@ def ratio(slow: Callable[[], float], fast: Callable[[], float], rounds: int = 5)
 def report(measurements: Sequence[Measurement], *, json_output: bool) -> int:
     """Prints measurements; returns 0 if all meet their limits, else 1."""
     if json_output:
-        found = {one.name: {"value": round(one.value, 4), "limit": f"{one.sense} {one.limit:g}", "met": one.is_met} for one in measurements}
+        found = {
+            one.name: {"value": round(one.value, 4), "limit": f"{one.sense} {one.limit:g}", "met": one.is_met, "what": one.what}
+            for one in measurements
+        }
         print(json.dumps(found))
     else:
         width = max(len(one.name) for one in measurements)

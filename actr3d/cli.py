@@ -201,7 +201,7 @@ def _name(what: str, text: str) -> str:
     return text
 
 
-_file, _folder = partial(_name, "file"), partial(_name, "folder")
+_file, _folder, _measure, _scheduler = (partial(_name, what) for what in ("file", "folder", "measure", "scheduler"))
 
 
 def _workers(text: str) -> int:
@@ -270,8 +270,8 @@ def _add_bench(commands: Any) -> None:
         "bench",
         help="measure speed",
         description="Measures speed, mostly as ratios of two costs in one run. Without a name, lists all benchmarks.",
-        epilog="Exit codes: 0 all limits are met; 1 one is missed; 2 there is no such benchmark, a package is missing, or the output "
-        "could not be written; 130 it was interrupted.",
+        epilog="Exit codes: 0 all limits are met; 1 one is missed, or the benchmark failed; 2 wrong options, a package is missing, or the "
+        "output could not be written; 130 it was interrupted.",
     )
     bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
@@ -308,7 +308,9 @@ def _add_design_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", type=_workers, metavar="N", help="number of workers here (default: one on each processor)")
-    where.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    where.add_argument(
+        "--scheduler", type=_scheduler, metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file"
+    )
 
 
 def _add_fit(commands: Any) -> None:
@@ -322,8 +324,8 @@ def _add_fit(commands: Any) -> None:
     )
     fit.add_argument("name", metavar="NAME|FILE", help="a design, or a file with one")
     fit.add_argument("--parameter", action="append", default=[], metavar="NAME=LOW..HIGH", help="a parameter, and the range to search")
-    fit.add_argument("--target", metavar="NAME|FILE", help="human data (default: those that the design names)")
-    fit.add_argument("--measure", metavar="NAME", help="the measure to fit, if the data have several")
+    fit.add_argument("--target", type=_file, metavar="NAME|FILE", help="human data (default: those that the design names)")
+    fit.add_argument("--measure", type=_measure, metavar="NAME", help="the measure to fit, if the data have several")
     fit.add_argument("--candidates", type=_count, default=40, metavar="N", help="number of candidates (default 40)")
     fit.add_argument(
         "--hold-out",
@@ -360,39 +362,21 @@ def _add_report(commands: Any) -> None:
         description="Writes a page with figures, tables and statistics of an experiment: report/index.html in its folder, which needs no "
         "network, with each figure as PNG and SVG and each table as CSV beside it.",
         epilog="Exit codes: 0 the report is written; 1 it is missing or incomplete, the data are not valid, or the output could not be "
-        "written; 2 a package is missing.",
+        "written; 2 wrong options, or a package is missing; 130 it was interrupted.",
     )
-    report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
-    report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
-    report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
+    report.add_argument("folder", type=_folder, metavar="FOLDER", help="the folder of an experiment")
+    report.add_argument(
+        "--human", type=_file, metavar="FILE", help="show these human data beside the model (default: those that the design names)"
+    )
+    report.add_argument("--compare", type=_folder, metavar="FOLDER", help="show another experiment beside this one")
     report.add_argument(
         "--out", type=_folder, metavar="FOLDER", help="the folder for the report (default: report in that of the experiment)"
     )
     report.set_defaults(function=_report)
 
 
-def _bench(options: argparse.Namespace) -> int:
-    from actr3d.bench import find_benchmarks  # benchmarks are slow to import
-    from actr3d.benchmark import report
-
-    known = find_benchmarks()
-    if options.name is None:
-        width = max(map(len, known)) + 2
-        for name, function in sorted(known.items()):
-            print(f"{name:<{width}}{(inspect.getdoc(function) or name).splitlines()[0]}")
-        return 0
-    if options.name not in known:
-        print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)
-        return 2
-    try:
-        return report(known[options.name](), json_output=options.json)
-    except ModuleNotFoundError as error:
-        print(error, file=sys.stderr)
-        return 2
-
-
 def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
-    """Marks a command that needs packages for experiments, which may not be installed, and whose errors are shown to a modeller."""
+    """Marks a command that may need packages for experiments, which may not be installed, and whose errors are shown to a modeller."""
 
     @wraps(work)
     def command(options: argparse.Namespace) -> int:
@@ -413,6 +397,22 @@ def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argpa
             return _complain(error)
 
     return command
+
+
+@_with_packages
+def _bench(options: argparse.Namespace) -> int:
+    from actr3d.bench import find_benchmarks  # benchmarks are slow to import
+    from actr3d.benchmark import report
+
+    known = find_benchmarks()
+    if options.name is None:
+        listed = {name: (inspect.getdoc(function) or name).splitlines()[0] for name, function in sorted(known.items())}
+        width = max(map(len, listed)) + 2
+        print(to_json(listed) if options.json else "\n".join(f"{name:<{width}}{about}" for name, about in listed.items()))
+        return 0
+    if options.name not in known:
+        raise SettingError(f"no benchmark '{options.name}'{alternatives(options.name, sorted(known))}")
+    return report(known[options.name](), json_output=options.json)
 
 
 @_with_packages

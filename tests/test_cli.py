@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import actr3d
+from actr3d.benchmark import Measurement, report
 from actr3d.cli import main
 from actr3d.recording import Recorded
 from tests.helpers.commands import run_command, run_without_reader
@@ -250,6 +251,9 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
         (["run", ""], "argument FILE: must be the name of a file (got '')"),
         (["run", "model.py", "--record", ""], "argument --record: must be the name of a file (got '')"),
         (["replay", ""], "argument RECORDING: must be the name of a file (got '')"),
+        (["report", ""], "argument FOLDER: must be the name of a folder (got '')"),
+        (["fit", "fan_effect", "--target", ""], "argument --target: must be the name of a file (got '')"),
+        (["experiment", "fan_effect", "--scheduler", ""], "argument --scheduler: must be the name of a scheduler (got '')"),
         (["experiment", "fan_effect", "--trial", "0", "--record", ""], "argument --record: must be the name of a file (got '')"),
         ([], "the following arguments are required: COMMAND"),
     ],
@@ -418,3 +422,29 @@ def test_an_interruption_while_the_command_is_loaded_is_no_traceback(tmp_path: P
     command = [sys.executable, "-m", "actr3d", "bench"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")
+
+
+def test_benchmarks_are_listed_as_json_too() -> None:
+    done = run_command("bench", "--json")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["core"] == "Compares the cognitive core with python_actr, in one run on one machine."
+
+
+@pytest.mark.parametrize(
+    ("name", "package", "install"), [("core", "python_actr", "python_actr"), ("experiment", "dask", "'actr3d[experiment]'")]
+)
+def test_a_benchmark_without_its_package_says_what_to_install(tmp_path: Path, name: str, package: str, install: str) -> None:
+    program = f"import sys; sys.modules['{package}'] = None; from actr3d.cli import main; sys.exit(main(['bench', '{name}']))"
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.endswith(f"; install: pip install {install}\n")
+
+
+def test_what_a_benchmark_prints_says_what_each_figure_means(capsys: pytest.CaptureFixture[str]) -> None:
+    figure = Measurement(name="copy", value=3.5, sense="at most", limit=3, what="a list's copy by a tuple's")
+    assert report([figure], json_output=False) == 1
+    assert capsys.readouterr().out == "MISSED  copy        3.50  (at most 3)  a list's copy by a tuple's\n"
+    assert report([figure], json_output=True) == 1
+    found = {"value": 3.5, "limit": "at most 3", "met": False, "what": "a list's copy by a tuple's"}
+    assert json.loads(capsys.readouterr().out) == {"copy": found}

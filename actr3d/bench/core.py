@@ -19,6 +19,7 @@ from typing import Any
 from actr3d.actr import ACTR, Buffer, Memory
 from actr3d.actr.loading import load_text
 from actr3d.benchmark import Measurement, benchmark, ratio, seconds_of
+from actr3d.errors import SettingError
 
 THREE = """
 from python_actr import *
@@ -74,15 +75,14 @@ def _peer() -> Generator[Loader]:
     """Provides a function that loads models for the original python_actr: from files, because it reads their source.
 
     Raises:
-        ModuleNotFoundError: If python_actr is not installed.
+        SettingError: If python_actr is not installed.
     """
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(), redirect_stdout(StringIO()):
         warnings.simplefilter("ignore")
         try:
             logger = importlib.import_module("python_actr.logger")
         except ModuleNotFoundError as error:
-            reason = f"the benchmark compares with another library, which is not installed ({error})"
-            raise ModuleNotFoundError(f"{reason}; use: uv run --group bench actr3d bench core") from None
+            raise SettingError(f"compares with another library ({error}); install: pip install python_actr") from None
         atexit.unregister(logger.finished)  # it would print a last line when the program ends, in the middle of the bench's output
 
         def load(source: str, name: str) -> ModuleType:
@@ -188,7 +188,7 @@ def measure() -> list[Measurement]:
     """Compares the cognitive core with python_actr, in one run on one machine.
 
     Raises:
-        ModuleNotFoundError: If python_actr is not installed.
+        SettingError: If python_actr is not installed.
     """
     with _peer() as load:
         three = _against_peer(load, THREE, "three", 1, 400, 400)

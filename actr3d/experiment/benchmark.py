@@ -12,6 +12,7 @@ import threading
 import time
 import tracemalloc
 from collections.abc import Callable
+from importlib import import_module
 from itertools import islice
 from pathlib import Path
 from statistics import median
@@ -237,6 +238,7 @@ def _workers(folder: Path) -> list[Measurement]:
 @benchmark("experiment")
 def measure() -> list[Measurement]:
     """Measures the cost of a trial, relative to its physics, and how experiments scale with workers, trials and rows."""
+    import_module("actr3d.experiment.cluster")  # where its packages are not installed, this is known before the measurements
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         return [*_aperture(folder), *_small(folder, SMALL), *_rows(folder, ROWS), *_workers(folder)]
