@@ -32,6 +32,9 @@ const STATUSES = {
   lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. What happened just before that may be missing. ${AGAIN}` },
 };
 
+/** The states that end by themselves, perhaps while the page does not hear of it. */
+const CHANGING = ["loading", "running", "busy"];
+
 function loadingLine() {
   return opening.value?.slow ? "the workbench is starting …" : "loading …";
 }
@@ -91,7 +94,8 @@ function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending 
 export const runStatus = computed(() => {
   const facts = known();
   const is = nameOf(facts);
-  return { is, line: facts.loading && is !== "busy" && is !== "halted" ? loadingLine() : STATUSES[is].line(facts), text: STATUSES[is].text(facts) };
+  const line = facts.loading && is !== "busy" && is !== "halted" ? loadingLine() : STATUSES[is].line(facts);
+  return { is, line: connected.value === false && CHANGING.includes(is) ? `${line} when the connection was lost` : line, text: STATUSES[is].text(facts) };
 });
 
 const isOne = (names) => computed(() => names.includes(runStatus.value.is));

@@ -43,7 +43,12 @@ def test_a_page_of_a_workbench_that_was_started_again_says_what_to_do(browser: B
             page.goto(f"{first.address}&model=counting.py")
             expect(connection).to_have_text("connected")
             expect(page.locator("#status")).to_have_text("paused: at its start", timeout=120_000)
+            page.get_by_label("Speed", exact=True).select_option("1/20 x")
+            page.click("#run")
+            expect(page.locator("#status")).to_have_text("running")
+            first.process.kill()  # it cannot stop the run
         expect(connection).to_have_text("connection lost; trying again …")
+        expect(page.locator("#status")).to_have_text("running when the connection was lost")
         open_tab(page, "Editor")
         with served(tmp_path / "models", "--port", str(first.port)) as second:
             expect(connection).to_have_text("the workbench was started again: open the address that it printed", timeout=30_000)
