@@ -68,7 +68,7 @@ async function answerOf(path, options) {
     });
     if (response && !(isQuestion && response.status === 401)) return response;
     do await new Promise((resolve) => setTimeout(resolve, AGAIN));
-    while (connected.peek() === false);
+    while (connected.peek() === false && !options.signal?.aborted);
   }
 }
 
